@@ -268,7 +268,9 @@ class Certified:
         T_tool_other = np.linalg.inv(T_world_tool) @ world.pose(other)
         if not self._sweeper.hand_may_meet(other, T_tool_other, opening):
             return None
-        T_aside_tool = self._sweeper.tool(np.array([*ASIDE, 0.0, *self._robot.home, opening]))
+        T_aside_tool = self._sweeper.tool(
+            np.array([*EMPTY_PLACE_M, 0.0, *self._robot.home, opening])
+        )
         T_before = world.pose(other)
         world.place(other, T_aside_tool @ T_tool_other)
         links = [world.links[name] for name in self._sweeper.hand]
@@ -286,7 +288,7 @@ class Certified:
         if self._beyond(approach, lift):
             return "the path leaves the joints' limits"
         self._world.place(other, self._plan.values[terms[6]].data)
-        findings = Findings(clearance=False)
+        findings = CollisionFindings(clearance=False)
         held = Held(self._bodies[terms[0]], hold.T_tool_body)
         for path, opening, carried in (
             (approach, self._robot.opening, None),

@@ -60,7 +60,7 @@ class ExpectedContacts:
 
 @dataclass
 class CollisionFindings:
-    """Findings of a sweep: each pair's deepest penetration, the nearest miss, the number of states.
+    """Findings of a sweep: deepest penetration of each pair, nearest miss, number of states.
 
     It ends, somewhere in the motion, when they are more than `most`. Without `clearance` nobody
     asks after the nearest miss.
@@ -94,7 +94,7 @@ class CollisionFindings:
         """Return metres beyond which a pair is of no interest."""
         if not self.clearance:
             return 0.0
-        return REACH if self.nearest is None else max(0.0, self.nearest.distance)
+        return CLEARANCE_RANGE_M if self.nearest is None else max(0.0, self.nearest.distance)
 
 
 class Sweeper:
@@ -123,8 +123,15 @@ class Sweeper:
         return self._sampler.tool(row)
 
     def hand_may_meet(self, other: str, T_tool_other: Array, opening: float) -> bool:
-        """Tell whether the hand may be within REACH of a body that is there for its tool frame."""
-        far = self._sampler.hand_radius(opening) + radius(self._world.solids[other]) + REACH
+        """Tell whether the hand may be within CLEARANCE_RANGE_M of a body.
+
+        The body is at T_tool_other in the tool frame.
+        """
+        far = (
+            self._sampler.hand_radius(opening)
+            + radius(self._world.solids[other])
+            + CLEARANCE_RANGE_M
+        )
         return float(np.linalg.norm(T_tool_other[:3, 3])) <= far
 
     def sweep(
@@ -150,20 +157,20 @@ class Sweeper:
         asked = self._world.solids if against is None else against
         bodies = [body for body in self._world.solids if body in asked and body not in carried]
         still = at_rest(self._world, bodies)
-        expected = self._expected(still, held, natural)
+        expected = self._expected(still, held, usual)
 
         for motion in self._sampler.motions(rows, times, held):
             if findings.full:
                 return
             findings.states += len(motion.rows)
             among, within = Advancement(self._world), Advancement(self._world)
-            for start in range(0, len(motion.rows), BLOCK):
-                block = motion.part(slice(start, start + BLOCK))
+            for start in range(0, len(motion.rows), SAMPLES_PER_BLOCK):
+                block = motion.part(slice(start, start + SAMPLES_PER_BLOCK))
                 self._against_bodies(block, held, findings, still, expected, among)
                 if against is None:
                     self._against_itself(block, held, findings, within)
 
-    def _expected(self, still: Still, held: Held | None, natural: Natural) -> Array:
+    def _expected(self, still: Still, held: Held | None, usual: ExpectedContacts) -> Array:
         """Mark pairs of movers and pieces at rest, shape (movers, pieces): 1 where a contact counts
         and a near miss does, 0 where only a contact does, -1 where neither.
         """
@@ -174,8 +181,8 @@ class Sweeper:
         by_hand += [False] * (len(movers) - len(by_hand))
         in_hand = np.arange(len(movers)) >= len(self._solids)
         for which, near, mark in (
-            (by_hand, natural.grasped, 0.0), (in_hand, natural.resting, 0.0),
-            (by_hand, natural.touching, -1.0),
+            (by_hand, usual.grasped, 0.0), (in_hand, usual.resting, 0.0),
+            (by_hand, usual.touching, -1.0),
         ):  # fmt: skip
             marks[np.ix_(np.array(which), np.array([owner in near for owner in owners]))] = mark
         marks[0, -1] = -1.0  # the base drives on the floor
@@ -185,7 +192,7 @@ class Sweeper:
         self,
         motion: Motion,
         held: Held | None,
-        findings: Findings,
+        findings: CollisionFindings,
         still: Still,
         expected: Array,
         known: Advancement,
@@ -205,15 +212,16 @@ class Sweeper:
                 current = state
             first, second = movers[mover], still.solids[other]
             distance = known.distance(pair, (first, second), way, reach)
-            if distance < REACH:
+            if distance < CLEARANCE_RANGE_M:
                 contact = Contact(first.owner, second.owner, distance, float(motion.times[state]))
                 tolerance = max(
-                    TOLERANCE, self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPER
+                    MAX_PENETRATION_M,
+                    self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPENING_M,
                 )
-                findings.met(contact, counts and findings.clearance, tolerance)
+                findings.record(contact, counts and findings.clearance, tolerance)
 
     def _against_itself(
-        self, motion: Motion, held: Held | None, findings: Findings, known: Advancement
+        self, motion: Motion, held: Held | None, findings: CollisionFindings, known: Advancement
     ) -> None:
         movers = self._sampler.movers(held)
         pairs = list(self._self_pairs)
@@ -238,7 +246,7 @@ class Sweeper:
             distance = known.distance((i, j), (movers[i], movers[j]), way, 0.0)
             if distance < 0:
                 time = float(motion.times[state])
-                findings.met(Contact(movers[i].owner, movers[j].owner, distance, time), False)
+                findings.record(Contact(movers[i].owner, movers[j].owner, distance, time), False)
 
     def _pose(self, motion: Motion, state: int, held: Held | None) -> None:
         row = motion.rows[state]

@@ -84,7 +84,9 @@ class Supports:
         names = [name for name in self._points if name != absent or name == body]
         poses = {name: self._world.pose(name) for name in names}
         centres = np.array([poses[name][:3, 3] for name in names])
-        sizes = np.array([self._sizes[name] for name in names]) + self._sizes[body] + 2 * GAP
+        sizes = (
+            np.array([self._sizes[name] for name in names]) + self._sizes[body] + 2 * SUPPORT_GAP_M
+        )
         within = np.linalg.norm(centres - poses[body][:3, 3], axis=1) <= sizes
         near = [name for name, is_near in zip(names, within.tolist(), strict=True) if is_near]
         return tuple((name, poses[name].tobytes()) for name in (body, *near))
@@ -135,7 +137,7 @@ class Supports:
         points = underside[carrying][:, :2]
         return SupportContact(on, least, outside(centre, points), points)
 
-    def why_overloaded(self, body: str, stands: Mapping[str, Stand]) -> str | None:
+    def why_overloaded(self, body: str, stands: Mapping[str, SupportContact]) -> str | None:
         """Say how a body that stands tips under what stands on it, and on that; None when it does
         not. What rests on several bodies is no one's load. `stands` are those of all movable
         bodies but one in the hand.
@@ -156,7 +158,7 @@ class Supports:
         )
         centre = masses @ centres / max(float(masses.sum()), 1e-9)
         beyond = outside(centre, stands[body].carrying)
-        if beyond <= LEAN:
+        if beyond <= CENTRE_TOLERANCE_M:
             return None
         others = " and ".join(sorted(load - {body}))
         return f"under {others} it tips: their centre of mass is {1000 * beyond:.1f} mm beyond"

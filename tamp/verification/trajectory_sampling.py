@@ -180,21 +180,21 @@ class Sampler:
             yield rows[first:], times[first:]
 
     def sampled(self, rows: Array, times: Array, held: Held | None) -> Motion:
-        """Interpolate rows and times so that nothing moves farther than STEP and TURN between."""
+        """Interpolate rows and times, in steps of POINT_STEP_M and JOINT_STEP_RAD at most."""
         if len(rows) > 1:
             turned = np.abs(np.diff(rows[:, 2:-1], axis=0)).sum(axis=1)
-            rows, times = _divided(rows, times, np.ceil(turned / COARSE))
+            rows, times = _divided(rows, times, np.ceil(turned / FIRST_STEP_RAD))
         solids = self.movers(held)
         corners = _corners(solids)
         frames = self._frames(rows, held)
         chords = _chords(frames, corners)
-        for _ in range(PASSES):
+        for _ in range(MAX_REFINEMENTS):
             change = np.abs(np.diff(rows[:, 2:-1], axis=0)).max(axis=1, initial=0.0)
             moved = chords.max(axis=0, initial=0.0)
-            parts = np.maximum(moved / STEP, change / TURN)
+            parts = np.maximum(moved / POINT_STEP_M, change / JOINT_STEP_RAD)
             if (parts <= 1 + 1e-6).all():
                 break
-            rows, times = _divided(rows, times, np.ceil(parts * SPARE))
+            rows, times = _divided(rows, times, np.ceil(parts * STEP_SAFETY_FACTOR))
             frames = self._frames(rows, held)
             chords = _chords(frames, corners)
 

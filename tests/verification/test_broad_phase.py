@@ -19,7 +19,7 @@ from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
 from tamp.verification import collision_sweep
 from tamp.verification.broad_phase import Pairs, Still
-from tamp.verification.collision_sweep import REACH, Sweeper
+from tamp.verification.collision_sweep import CLEARANCE_RANGE_M, Sweeper
 from tamp.verification.link_frames import LinkFrames
 from tamp.verification.report import Report
 from tamp.verification.trajectory_sampling import Motion
@@ -41,7 +41,7 @@ class EveryPair:
     def distance(
         self, pair: tuple[int, int], solids: tuple[Solid, Solid], way: float, reach: float
     ) -> float:
-        return self._world.distance(*solids, REACH)
+        return self._world.distance(*solids, CLEARANCE_RANGE_M)
 
 
 def every_still(
@@ -51,7 +51,7 @@ def every_still(
     for state in range(len(motion.rows)):
         low, high = motion.low[:, None, state], motion.high[:, None, state]
         gaps = np.maximum(low - still.high, still.low - high).max(axis=2)
-        for mover, piece in np.argwhere((gaps < REACH) & np.isfinite(within)).tolist():
+        for mover, piece in np.argwhere((gaps < CLEARANCE_RANGE_M) & np.isfinite(within)).tolist():
             yield state, mover, piece, -np.inf
 
 

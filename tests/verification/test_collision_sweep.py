@@ -55,9 +55,9 @@ def test_samples_are_close_together(world: World, rng: np.random.Generator) -> N
         motion = sampler.sampled(ends, np.array([0.0, 1.0]), held)
         rows, times = motion.rows, motion.times
         assert np.allclose(rows[[0, -1]], ends) and (np.diff(times) > 0).all()
-        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= TURN * (1 + 1e-6)
+        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= JOINT_STEP_RAD * (1 + 1e-6)
         tips = motion.frames[-1] @ np.array([0.0, 0.0, 0.15, 1.0])
-        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= STEP * (1 + 1e-6)
+        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= POINT_STEP_M * (1 + 1e-6)
         tried += len(rows)
     assert tried > 1000
 

@@ -23,7 +23,7 @@ from tamp.planner.problem import Problem, load_problem
 from tamp.simulation.engines import open_world
 from tamp.stream import Call, Rejection
 from tamp.system.deadline import Deadline
-from tamp.verification.support_geometry import Stand, Supports
+from tamp.verification.support_geometry import SupportContact, Supports
 
 PROBLEM = """\
 domain: carriers
@@ -142,7 +142,7 @@ def test_the_judge_feels_what_tips_under_its_load(problem: Problem) -> None:
     with open_world(scene) as world:
         supports = Supports(world)
 
-        def stands() -> dict[str, Stand]:
+        def stands() -> dict[str, SupportContact]:
             return {name: supports.stand(name) for name in scene.movable}
 
         x, y, z = scene.bodies["plate"].pose.position
