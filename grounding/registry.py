@@ -77,7 +77,7 @@ TRAINING_VARIANTS: Mapping[str, str] = {
     for model in ("mlp-bb", "gnn-bb")
     for scheme in ("discriminator", "classifier")
 }
-"""Name of what ships of another training scheme than "both" to the model that it is."""
+"""Name of what ships of one training scheme, of the household layout, to the model that it is."""
 
 PARAMETER_FREE: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
 """Model name to what makes it of nothing."""
