@@ -6,7 +6,7 @@ lacks what the shortcut needs.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
 from typing import Any
@@ -78,65 +78,38 @@ def generate_code_when_called() -> None:
     intermediate representation, into the functions that call them: a tenth of what compiling takes.
     These are kept back until somebody asks for an address in one, or for its machine code.
     """
-    names = (
+    names = {
         "_finalize_final_module",
         "_finalize_dynamic_globals",
         "_verify_declare_only_symbols",
         "get_defined_functions",
         "get_pointer_to_function",
         "serialize_using_object_code",
-    )
-    if any(not hasattr(JITCodeLibrary, name) for name in names):
+    }
+    if not names <= {*dir(JITCodeLibrary)}:
         return
 
-    generate = JITCodeLibrary._finalize_final_module
-    address, machine_code = (getattr(JITCodeLibrary, name) for name in names[-2:])
-    set_environment = JITCPUCodegen.set_env
-    environments: dict[str, Any] = {}
-
-    def defined(library: Any) -> list[str]:
-        return [function.name for function in library.get_defined_functions()]
-
-    def is_called(library: Any) -> bool:
-        # one that is loaded from a cache has machine code, and no functions to see
-        names = defined(library)
-        return not names or any(name.startswith(WRAPPERS) for name in names)
-
-    def set_environment_if_there(self: Any, env_name: str, env: Any) -> None:
-        if self._engine.get_global_value_address(env_name):
-            set_environment(self, env_name, env)
-        else:
-            environments[env_name] = env
-
-    def generate_now(self: Any) -> None:
-        generate(self)
-        # what it was linked from has its variables in it
-        waiting = dict(environments)
-        environments.clear()
-        for name, environment in waiting.items():
-            set_environment_if_there(self.codegen, name, environment)
+    generate = _with_environments(JITCodeLibrary._finalize_final_module)
+    address = JITCodeLibrary.get_pointer_to_function
+    machine_code = JITCodeLibrary.serialize_using_object_code
 
     def generate_if_called(self: Any) -> None:
-        if not _KEEPING_BACK[0] or is_called(self):
-            generate_now(self)
+        if not _KEEPING_BACK[0] or _is_called(self):
+            generate(self)
             return
         self._finalize_dynamic_globals()
         self._verify_declare_only_symbols()
         self._finalized, self._kept_back = True, True
 
-    def is_kept_back(library: Any) -> bool:
-        library._ensure_finalized()
-        return getattr(library, "_kept_back", False)
-
     def generate_if_kept_back(self: Any) -> None:
-        if is_kept_back(self):
+        if _is_kept_back(self):
             self._kept_back = False
-            generate_now(self)
+            generate(self)
 
     @wraps(address)
     def generate_for_address(self: Any, name: str) -> int:
         # numba asks each for its wrapper, and takes 0 where there is none
-        if is_kept_back(self) and name not in defined(self):
+        if _is_kept_back(self) and name not in _defined(self):
             return 0
         generate_if_kept_back(self)
         return address(self, name)
@@ -149,4 +122,43 @@ def generate_code_when_called() -> None:
     JITCodeLibrary._finalize_final_module = generate_if_called
     JITCodeLibrary.get_pointer_to_function = generate_for_address
     JITCodeLibrary.serialize_using_object_code = generate_for_machine_code
-    JITCPUCodegen.set_env = set_environment_if_there
+
+
+def _defined(library: Any) -> list[str]:
+    return [function.name for function in library.get_defined_functions()]
+
+
+def _is_called(library: Any) -> bool:
+    """Check whether something other than compiled code calls a function of a code library."""
+    # one that is loaded from a cache has machine code, and no functions to see
+    names = _defined(library)
+    return not names or any(name.startswith(WRAPPERS) for name in names)
+
+
+def _is_kept_back(library: Any) -> bool:
+    library._ensure_finalized()
+    return getattr(library, "_kept_back", False)
+
+
+def _with_environments(generate: Callable[[Any], None]) -> Callable[[Any], None]:
+    """Return a generator of machine code after which the environments of what was linked into it
+    are set: numba sets each when its function is compiled, which may be before there is code.
+    """
+    set_environment = JITCPUCodegen.set_env
+    waiting: dict[str, Any] = {}
+
+    def set_if_there(self: Any, env_name: str, env: Any) -> None:
+        if self._engine.get_global_value_address(env_name):
+            set_environment(self, env_name, env)
+        else:
+            waiting[env_name] = env
+
+    def generate_and_set(library: Any) -> None:
+        generate(library)
+        environments = dict(waiting)
+        waiting.clear()
+        for name, environment in environments.items():
+            set_if_there(library.codegen, name, environment)
+
+    JITCPUCodegen.set_env = set_if_there
+    return generate_and_set
