@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
 from tamp.geometric.context import Context
-from tamp.geometric.loading.load import LoadedProblem, load_scene
+from tamp.geometric.loading.load import LoadedProblem
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
 from tamp.geometric.motion.planners import COMPILED, PLANNERS
@@ -19,24 +19,16 @@ from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.hulls import prepare
 from tamp.geometric.values import Grasp
-from tamp.planner.initial_state import InitialState, initial_state
-from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
 from tamp.planner.own_relations import decided
+from tamp.planner.problem_files import ProblemFiles, parse_task, read_files
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
-from tamp.planner.wanted_relations import unasked_streams, wanted_facts
-from tamp.relations.observed import scene_names
+from tamp.planner.wanted_relations import unasked_streams
 from tamp.symbolic.algorithms.result import StreamTask
-from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.lint import lint
-from tamp.symbolic.pddl.parser import parse_domain, parse_facts, parse_goal, parse_streams
 from tamp.symbolic.pddl.relations import Relation
-from tamp.symbolic.pddl.structs import Domain, Formula, StreamFile, Task
+from tamp.symbolic.pddl.structs import Task
 from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
-from tamp.system.files import find_domain
-
-METRIC = "minimize total-cost"
-"""The metric that a problem may name."""
 
 STEERINGS = ("se2", "reeds-shepp", "differential")
 """How the base may move: in any direction, like a car, or turning on the spot and straight ahead.
@@ -126,8 +118,8 @@ def load_problem(
         raise InputError(f"unknown planner '{planner}'", found=planner, choices=PLANNERS)
     load_compiled_loops()  # numba is loaded anyway
 
-    files = _read(problem, domain, streams, scene, None if robot is None else str(robot))
-    start, goal = _task(files, holding)
+    files = read_files(problem, domain, streams, scene, None if robot is None else str(robot))
+    start, goal = parse_task(files, holding)
 
     served = Served.of(files.loaded, samplers or {}, groundings or {}, registry or {})
     context = _context(files, served, steering, planner, holding)
@@ -167,87 +159,8 @@ def load_problem(
     )
 
 
-@dataclass(frozen=True)
-class _Files:
-    """The contents of a problem's files, as far as each can be understood by itself."""
-
-    loaded: LoadedProblem
-    domain: Domain
-    domain_path: Path
-    streams: StreamFile
-    streams_path: Path
-
-    def by_role(self) -> dict[str, tuple[Path, ...]]:
-        """List the files as `Problem.files` has them."""
-        return {
-            "problem": (self.loaded.path.resolve(),),
-            "domain": (self.domain_path.resolve(),),
-            "streams": (self.streams_path.resolve(),),
-            "meshes": tuple(path.resolve() for path in self.loaded.meshes),
-            "drawn": tuple(path.resolve() for path in self.loaded.drawn),
-        }
-
-
-def _read(
-    problem: str | Path,
-    domain: str | Path | None,
-    streams: str | Path | None,
-    scene: Scene | None,
-    robot: str | None,
-) -> _Files:
-    """Read the problem, its domain and the domain's streams; take the scene as it is by now."""
-    loaded = load_scene(problem, robot)
-    if scene is not None:
-        loaded = replace(loaded, scene=scene)
-
-    domain_path = _domain_path(loaded, domain)
-    parsed = parse_domain(read_pddl(domain_path), domain_path)
-    if carries(parsed):
-        loaded = replace(loaded, scene=with_tops(loaded.scene))
-
-    beside = domain_path.with_suffix(".streams.pddl")
-    streams_path = Path(streams) if streams is not None else beside
-    if streams is None and not beside.exists():
-        raise InputError(
-            f"no such file: the streams of '{domain_path.name}' are looked for beside it",
-            file=beside,
-            remedy="--streams FILE names others",
-        )
-    declared = parse_streams(read_pddl(streams_path), parsed, streams_path)
-    return _Files(loaded, parsed, domain_path, declared, streams_path)
-
-
-def _task(files: _Files, holding: Grasp | None) -> tuple[InitialState, Formula]:
-    """Say the scene in the domain's words, with the facts that the file adds; parse the goal."""
-    loaded, domain = files.loaded, files.domain
-    start = initial_state(loaded.scene, domain, holding)
-
-    try:
-        goal = parse_goal(
-            loaded.goal.text, domain, start.objects, loaded.path,
-            line_offset=loaded.goal.line - 1, column_offset=loaded.goal.column - 1,
-        )  # fmt: skip
-    except InputError as error:
-        raise remedied(error, domain) from None
-    for passage in loaded.init:
-        start.facts |= parse_facts(
-            passage.text, domain, start.objects, loaded.path,
-            line_offset=passage.line - 1, column_offset=passage.column - 1,
-        )  # fmt: skip
-
-    if carries(domain):
-        start.facts |= place_facts(loaded.scene, domain, goal)
-        check_circle(loaded, goal)
-    start.facts |= wanted_facts(
-        files.streams, domain, goal, start.objects, start.facts, scene_names(loaded.scene)
-    )
-
-    _check_metric(loaded)
-    return start, goal
-
-
 def _context(
-    files: _Files, served: Served, steering: str | None, planner: str, holding: Grasp | None
+    files: ProblemFiles, served: Served, steering: str | None, planner: str, holding: Grasp | None
 ) -> Context:
     """Make what all streams share: the scene, the robot, the samplers mixed with hand-made ones."""
     scene = files.loaded.scene
@@ -267,33 +180,6 @@ def _context(
 def _own_robot(robot: Robot) -> tuple[Path, ...]:
     """List the files of a robot that does not come with tamp."""
     return () if robot.name in ROBOTS and robot.folder.parent == ASSETS else robot.files
-
-
-def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:
-    if domain is not None:
-        return find_domain(domain)
-    if loaded.domain is None:
-        raise loaded.error(
-            "no domain",
-            remedy="Name one in the file (domain: cupboard) or on the command line, "
-            "before the problem",
-        )
-    try:
-        return find_domain(loaded.domain, loaded.path.parent)
-    except InputError as error:
-        raise error.at(loaded.path, loaded.line_of("domain")) from None
-
-
-def _check_metric(loaded: LoadedProblem) -> None:
-    metric = loaded.metric
-    if (
-        metric is not None
-        and " ".join(metric.text.lower().replace("(", " ").replace(")", " ").split()) != METRIC
-    ):
-        remedy = "The one that there is: (minimize (total-cost))"
-        raise InputError(
-            f"unknown metric '{metric.text}'", file=loaded.path, line=metric.line, remedy=remedy
-        )
 
 
 def _check_start(loaded: LoadedProblem, context: Context) -> None:

@@ -290,10 +290,8 @@ class Certified:
         self._world.place(other, self._plan.values[terms[6]].data)
         findings = CollisionFindings(clearance=False)
         held = Held(self._bodies[terms[0]], hold.T_tool_body)
-        for path, opening, carried in (
-            (approach, self._robot.opening, None),
-            (lift, hold.opening, held),
-        ):
+        ways = ((approach, self._robot.opening, None), (lift, hold.opening, held))
+        for path, opening, carried in ways:
             rows = np.array([[*base, *joints, opening] for joints in path])
             times = np.arange(len(rows), dtype=float)
             self._sweeper.sweep(rows, times, carried, findings, against=frozenset({other}))

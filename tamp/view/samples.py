@@ -53,11 +53,13 @@ def sample_markers(
     if record is not None:
         found = [_shot(item, names, scene) for item in record["samples"].items()]
         return tuple(shot for shot in found if shot is not None)
+
     grasps = [
         field
         for field in (root["values"].fields().values() if "values" in root else ())
         if _is_grasp(field)
     ]
+
     made = []
     for field in grasps:
         body = names.get(field["body"].text(), "")

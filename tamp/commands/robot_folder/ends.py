@@ -84,14 +84,17 @@ def ends(description: Description) -> tuple[End, ...]:
             free = only.kind in FREE
             follow(only.child if free else base, only.child, (*way, only.child), moved)
             return
+
         fingers = [joint for joint in branches if _is_finger(description, joint)]
         if moved >= FEWEST and fingers and len(fingers) == len(branches):
             found.append(_hand_end(base, fingers, way, moved))
             return
+
         if not branches:
             if moved >= FEWEST:
                 found.append(End(base, _flange(description, link), moved))
             return
+
         for joint in branches:
             moves = joint.kind in MOVING
             start = joint.child if joint.kind in FREE else base

@@ -112,6 +112,7 @@ class _Writer:
             parent, offset = self._links[parent_number], self._anchors[parent_number]
             T = pose_matrix(model.body_pos[body], model.body_quat[body])
             T[:3, 3] -= offset
+
             for count, joint in enumerate(own):
                 at = np.array(model.jnt_pos[joint])
                 child = name if count == len(own) - 1 else self._free(f"{name}_{joints[joint]}")
@@ -122,8 +123,10 @@ class _Writer:
                     self._link(child)
                 self._joint(joint, joints[joint], parent, child, step, mimics)
                 parent = child
+
             if not len(own):
                 self._fixed(self._free(f"{name}_fixed"), parent, name, T)
+
         self._anchors[body] = anchor
         link = self._link(name, float(model.body_mass[body]) if body else 0.0)
         first = int(model.body_geomadr[body])
@@ -152,10 +155,12 @@ class _Writer:
             # the pose in the file is where a free body stands
             self._element(name, "floating", parent, child, T)
             return
+
         slides = kind == int(kinds.mjJNT_SLIDE)
         word = "prismatic" if slides else ("revolute" if limited else "continuous")
         element = self._element(name, word, parent, child, T)
         ElementTree.SubElement(element, "axis", xyz=words(model.jnt_axis[joint]))
+
         limit = {"effort": repr(self._effort(joint)), "velocity": "0"}  # MJCF has no velocities
         if limited:
             drawn = float(model.qpos0[model.jnt_qposadr[joint]])

@@ -37,10 +37,12 @@ class Shapes:
         kind, size = int(model.geom_type[geom]), [float(v) for v in model.geom_size[geom]]
         if kind in (int(kinds.mjGEOM_PLANE), int(kinds.mjGEOM_HFIELD)):
             return
+
         collision = ElementTree.SubElement(link, "collision")
         T = pose_matrix(model.geom_pos[geom], model.geom_quat[geom])
         T[:3, 3] -= anchor
         add_origin(collision, T)
+
         geometry = ElementTree.SubElement(collision, "geometry")
         if kind == int(kinds.mjGEOM_BOX):
             ElementTree.SubElement(geometry, "box", size=words(2 * value for value in size))

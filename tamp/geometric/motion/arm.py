@@ -123,8 +123,6 @@ def plan_arm(
 
     checks += len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))
-    return (
-        MotionResult(path, None, checks)
-        if certified
-        else MotionResult(None, Failure.EXHAUSTED, checks)
+    return MotionResult(
+        path if certified else None, None if certified else Failure.EXHAUSTED, checks
     )

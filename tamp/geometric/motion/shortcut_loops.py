@@ -92,16 +92,19 @@ def cut_at_random(
     for _ in range(tries):
         if count < 3 or refused >= patience:
             break
+
         stations[0] = 0.0
         for row in range(1, count):
             stations[row] = stations[row - 1] + _distance(path[row - 1], path[row])
         total = stations[count - 1]
+
         first, second = uniform(state) * total, uniform(state) * total
         low, high = min(first, second), max(first, second)
         i = _point(path, stations, count, low, cut, 0)
         j = _point(path, stations, count, high, cut, 1)
         if i == j or high - low - _distance(cut[0], cut[1]) < GAIN * total:
             continue
+
         asked += 1
         if decide(cut[0], cut[1], padding, True, room, geometry, work) == FREE:
             refused = 0

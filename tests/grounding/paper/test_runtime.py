@@ -128,13 +128,14 @@ def test_attention_weights_the_surroundings(seen):
     network, o = Network(arrays, "classifier"), seen[-1]
     arguments, others = o.arguments.reshape(1, -1).astype(np.float32), o.others.astype(np.float32)
     weight, bias = network.attend[0]
-    network.attend[0] = (np.zeros_like(weight), bias)
+    nothing = np.zeros_like(weight)
+    network.attend[0] = (nothing, bias)
     mean = network.context(arguments, others)
-    network.attend = []
+    network.attend[:] = []
     np.testing.assert_allclose(network.context(arguments, others), mean, atol=1e-6)
-    network.attend = [(1e4 * np.abs(weight), bias)]
+    network.attend[:] = [(1e4 * np.abs(weight), bias)]
     picked = network.context(arguments, others)
-    network.attend = []
+    network.attend[:] = []
     alone = [network.context(arguments, others[row : row + 1]) for row in range(len(others))]
     assert min(np.abs(picked - one).max() for one in alone) < 1e-4
 
