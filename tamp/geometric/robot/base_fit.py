@@ -9,7 +9,6 @@ import numpy as np
 
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.geometric.robot.numerical import spread
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 
@@ -53,6 +52,8 @@ class BaseFit:
     """
 
     def __init__(self, robot: Robot) -> None:
+        from tamp.geometric.robot.numerical import spread  # compiled for those who need it
+
         chain = Chain.of(robot)
         virtual = np.tile(np.eye(4), (3, 1, 1))
         for index, R in enumerate((_X, _X.T @ _Y, _Y.T)):
