@@ -19,6 +19,18 @@ WRAPPERS = ("_ZN7cpython", "cfunc.")
 calls."""
 
 
+NEEDED = {
+    "_optimize_final_module",
+    "_finalize_final_module",
+    "_finalize_dynamic_globals",
+    "_verify_declare_only_symbols",
+    "get_defined_functions",
+    "get_pointer_to_function",
+    "serialize_using_object_code",
+}
+"""What this changes, or calls, of numba's code libraries."""
+
+
 def compare_quickly() -> None:
     """Give numba's options a hash and a comparison of the same results in a tenth of the time.
 
@@ -81,16 +93,7 @@ def generate_code_when_called() -> None:
     they are optimized again: a quarter of what compiling takes. For these numba's cheap passes
     do, and code is kept back until somebody asks for an address in one, or for its machine code.
     """
-    names = {
-        "_optimize_final_module",
-        "_finalize_final_module",
-        "_finalize_dynamic_globals",
-        "_verify_declare_only_symbols",
-        "get_defined_functions",
-        "get_pointer_to_function",
-        "serialize_using_object_code",
-    }
-    if not names <= {*dir(JITCodeLibrary)}:
+    if not {*dir(JITCodeLibrary)} >= NEEDED:
         return
 
     generate = _with_environments(JITCodeLibrary._finalize_final_module)
@@ -101,11 +104,8 @@ def generate_code_when_called() -> None:
     def optimize_if_called(self: Any) -> None:
         if not _KEEPING_BACK[0] or _is_called(self):
             optimize(self)
-            return
-        passes, builder = self._codegen._module_pass_manager(
-            loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
-        )
-        passes.run(self._final_module, builder)
+        else:
+            _optimize_cheaply(self)
 
     def generate_if_called(self: Any) -> None:
         if not _KEEPING_BACK[0] or _is_called(self):
@@ -137,6 +137,14 @@ def generate_code_when_called() -> None:
     JITCodeLibrary._finalize_final_module = generate_if_called
     JITCodeLibrary.get_pointer_to_function = generate_for_address
     JITCodeLibrary.serialize_using_object_code = generate_for_machine_code
+
+
+def _optimize_cheaply(library: Any) -> None:
+    """Run the first of the two rounds of passes that numba runs."""
+    passes, builder = library._codegen._module_pass_manager(
+        loop_vectorize=False, slp_vectorize=False, opt=0, cost="cheap"
+    )
+    passes.run(library._final_module, builder)
 
 
 def _defined(library: Any) -> list[str]:

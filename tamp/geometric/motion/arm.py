@@ -76,14 +76,13 @@ def plan_arm(
         return checker.edge_free(conf(a), conf(b))
 
     def inside(arm: Array) -> bool:
-        return bool(np.all(lower <= arm) and np.all(arm <= upper))
+        return bool(((lower <= arm) & (arm <= upper)).all())
 
     candidates = candidates[[inside(goal) for goal in candidates]]
     if not inside(start) or not len(candidates):
         return MotionResult(None, Failure.LIMITS, 0)
     if not checker.free(conf(start)):
         return MotionResult(None, Failure.START, 0)
-
     candidates = candidates[[checker.free(conf(goal)) for goal in candidates]]
     if not len(candidates):
         return MotionResult(None, Failure.GOAL, 0)
@@ -117,11 +116,11 @@ def plan_arm(
             path, more = shortcut(path, edge_free, rng, tries=shortcuts, patience=SHORTCUT_PATIENCE)
             asked += more
 
-    checks += asked
     if path is None:
-        return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
+        failure = Failure.TIME if deadline.passed else Failure.EXHAUSTED
+        return MotionResult(None, failure, checks + asked)
 
-    checks += len(path) - 1
+    checks += asked + len(path) - 1
     certified = all(edge_free(a, b) for a, b in pairwise(path))
     return MotionResult(
         path if certified else None, None if certified else Failure.EXHAUSTED, checks

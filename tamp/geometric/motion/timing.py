@@ -74,21 +74,34 @@ def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
     if len(passed) > 2:
         rail = blend(passed)
         rates = speeds(rail, velocity, acceleration)
-        if rates is not None:
+        # A node that is passed at almost no rate takes longer than to rest at every corner.
+        if rates is not None and float(np.sum(_spans(rail, rates))) < sum(
+            sum(_straight_profile(a.vertex, b.vertex, velocity, acceleration)[1:])
+            for a, b in pairwise(passed)
+        ):
             return _slowed(_sampled(rail, rates), velocity, acceleration)
     vertices = [corner.vertex for corner in passed]
     return _joined([_straight(a, b, velocity, acceleration) for a, b in pairwise(vertices)])
 
 
-def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
-    """Time one edge from rest to rest: full acceleration, full speed, full braking."""
+def _straight_profile(
+    start: Array, end: Array, velocity: Array, acceleration: Array
+) -> tuple[float, float, float]:
+    """Compute the profile of one edge from rest to rest, full acceleration, full speed, full
+    braking: the acceleration in edges per second squared, the seconds of a ramp, and the rest.
+    """
     step = np.abs(end - start)
     with np.errstate(divide="ignore"):
         # In edges per second (squared).
         top, push = float(np.min(velocity / step)), float(np.min(acceleration / step))
     top = min(top, push**0.5)  # a short edge brakes before it reaches full speed
-    ramp = top / push
-    duration = 1.0 / top + ramp
+    return push, top / push, 1.0 / top
+
+
+def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
+    """Time one edge from rest to rest."""
+    push, ramp, rest = _straight_profile(start, end, velocity, acceleration)
+    top, duration = 1.0 / rest, rest + ramp
     times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / TICK))) + 1)
     left = duration - times
     done = np.where(times < ramp, 0.5 * push * times**2, top * (times - 0.5 * ramp))
@@ -108,12 +121,16 @@ def _joined(pieces: list[Timed]) -> Timed:
     )
 
 
+def _spans(rail: BlendedPath, rates: Array) -> Array:
+    """Compute the seconds between nodes; the acceleration is constant there."""
+    return 2.0 * np.diff(rail.stations) / (rates[:-1] + rates[1:])
+
+
 def _sampled(rail: BlendedPath, rates: Array) -> Timed:
     """Return the nodes at their times, and more samples on the straight parts; the acceleration is
     constant between nodes.
     """
-    gaps = np.diff(rail.stations)
-    spans = 2.0 * gaps / (rates[:-1] + rates[1:])
+    gaps, spans = np.diff(rail.stations), _spans(rail, rates)
     counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
     i = np.repeat(np.arange(len(spans)), counts)  # the interval of each sample
     ends = np.cumsum(counts)
