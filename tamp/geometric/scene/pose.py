@@ -130,7 +130,9 @@ def quaternion_from_matrix(rotation: Float[Array, "3 3"]) -> tuple[float, float,
     return (x, y, z, w)
 
 
-def pose_difference(T_first: Array, T_second: Array) -> tuple[float, float]:
+def pose_difference(
+    T_first: Float[Array, "4 4"], T_second: Float[Array, "4 4"]
+) -> tuple[float, float]:
     """Measure metres and radians between two poses of shape (4, 4)."""
     cosine = (np.trace(T_first[:3, :3].T @ T_second[:3, :3]) - 1) / 2
     skew = T_first[:3, :3].T @ T_second[:3, :3]
@@ -143,7 +145,7 @@ def pose_difference(T_first: Array, T_second: Array) -> tuple[float, float]:
     )
 
 
-def base_difference(first: Array, second: Array) -> float:
+def base_difference(first: Float[Array, " 3"], second: Float[Array, " 3"]) -> float:
     """Measure the largest difference of two base configurations x, y, yaw; a full turn is none."""
     turn = (first[2] - second[2] + math.pi) % (2 * math.pi) - math.pi
     return float(max(np.abs(first[:2] - second[:2]).max(), abs(turn)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from tamp.geometric.streams.grasp_directions import (
     cross,
 )
 from tamp.geometric.streams.hand_fit import FRICTION_CONE_RAD
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 FINGERTIP_M = 0.009
 """Metres by which the finger tips reach beyond the tool's origin."""
@@ -35,7 +39,9 @@ POINTS_PER_BATCH = 64
 """Surface points drawn at once."""
 
 
-def at_depth(solid: ConvexUnion, point: Array, approach: Array, depth: float) -> Array:
+def at_depth(
+    solid: ConvexUnion, point: Float[Array, " 3"], approach: Float[Array, " 3"], depth: float
+) -> Float[Array, " 3"]:
     """Move the point to `depth` in the body along the approach; tips stay in a thin one."""
     low, high = solid.extent(approach)
     surface = solid.solid_at(point, approach)
@@ -46,8 +52,8 @@ def at_depth(solid: ConvexUnion, point: Array, approach: Array, depth: float) ->
 
 
 def antipodal_grasps(
-    solid: ConvexUnion, up: Array, widest: float, rng: np.random.Generator
-) -> Iterator[Array | None]:
+    solid: ConvexUnion, up: Float[Array, " 3"], widest: float, rng: np.random.Generator
+) -> Iterator[Float[Array, "4 4"] | None]:
     """Draw tool poses whose closing line meets the surface squarely on both sides; None for a draw
     without.
     """
@@ -103,7 +109,9 @@ def _around(
     )
 
 
-def tool_pose(closing: Array, approach: Array, origin: Array) -> Array:
+def tool_pose(
+    closing: Float[Array, " 3"], approach: Float[Array, " 3"], origin: Float[Array, " 3"]
+) -> Float[Array, "4 4"]:
     """Build T_body_tool (4, 4): y along the closing axis, z along the approach."""
     T = np.eye(4)
     T[:3, 0], T[:3, 1], T[:3, 2], T[:3, 3] = cross(closing, approach), closing, approach, origin

@@ -86,7 +86,7 @@ def test_random_rails_take_as_long_as_with_toppra(rng: np.random.Generator) -> N
         d = int(rng.integers(2, 8))
         path = np.cumsum(rng.normal(0.0, 0.5, (int(rng.integers(3, 7)), d)), axis=0)
         velocity, acceleration = rng.uniform(0.3, 2.0, d), rng.uniform(0.5, 5.0, d)
-        rail = corners(corners(path, acceleration, lambda _a, _b: True))
+        rail = blend(corners(path, acceleration, lambda _a, _b: True))
         ours, theirs = (f(rail, velocity, acceleration) for f in (speeds, reference.speeds))
         if theirs is None:
             continue

@@ -5,7 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.corner_blending import TICK
+from tamp.geometric.motion import timing
+from tamp.geometric.motion.corner_blending import TICK, BlendedPath
+from tamp.geometric.motion.retiming import speeds
 from tamp.geometric.motion.timing import Timed, time_path
 from tamp.geometric.scene.pose import Array
 
@@ -145,3 +147,21 @@ def test_uneven_and_nearly_repeated_vertices() -> None:
             assert _respects_limits(timed)
             looked += 1
     assert looked == 8
+
+
+def test_a_node_that_is_passed_at_almost_no_rate_makes_it_rest_at_the_corners(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    path = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    limits = np.ones(2), np.ones(2)
+    usual = time_path(path, *limits, lambda a, b: True)
+
+    def standing(rail: BlendedPath, velocity: Array, acceleration: Array) -> Array | None:
+        rates = speeds(rail, velocity, acceleration)
+        assert rates is not None
+        rates[-3:-1] = 1e-8
+        return rates
+
+    monkeypatch.setattr(timing, "speeds", standing)
+    timed = time_path(path, *limits, lambda a, b: True)
+    assert usual.duration < timed.duration < 5.0

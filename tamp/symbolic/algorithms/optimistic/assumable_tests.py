@@ -21,6 +21,8 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
     """
     everything = list(streams)
     lifters = guard_lifters(task)
+    # An action names objects as well, for which no stream need have said what a test wants.
+    direct = {atom.predicate for atom in atoms_of_actions(task)}
     changing = task.domain.fluent_predicates | {rule.head.predicate for rule in task.domain.derived}
     needed = {atom.predicate for stream in everything for atom in stream.declaration.domain}
 
@@ -29,17 +31,24 @@ def assumable(streams: Iterable[BoundStream], task: Task) -> dict[str, tuple[Bou
         for atom in stream.declaration.certified:
             producers[atom.predicate].append((stream, atom))
 
-    return {
-        predicate: made[0]
-        for predicate, made in producers.items()
-        if len(made) == 1
-        and made[0][0].is_test
-        and len(made[0][0].declaration.certified) == 1
-        and set(made[0][0].declaration.inputs) == set(made[0][1].terms)
-        and predicate in lifters
-        and predicate not in needed
-        and changing.isdisjoint(atom.predicate for atom in made[0][0].declaration.domain)
-    }
+    found: dict[str, tuple[BoundStream, Atom]] = {}
+    for predicate, made in producers.items():
+        stream, fact = made[0]
+        domain = {atom.predicate for atom in stream.declaration.domain}
+        is_only_asked = len(made) == 1 and predicate in lifters and predicate not in needed
+        is_of_its_inputs = (
+            stream.is_test
+            and len(stream.declaration.certified) == 1
+            and set(stream.declaration.inputs) == set(fact.terms)
+        )
+        if (
+            is_only_asked
+            and is_of_its_inputs
+            and changing.isdisjoint(domain)
+            and (predicate not in direct or domain.isdisjoint(producers))
+        ):
+            found[predicate] = made[0]
+    return found
 
 
 def given_for(
@@ -111,9 +120,15 @@ def guard_lifters(task: Task) -> frozenset[str]:
 
 def atoms_of(task: Task) -> Iterator[Atom]:
     """Yield the atoms of all conditions."""
+    yield from atoms_of_actions(task)
+    for rule in task.domain.derived:
+        yield from atoms(rule.body)
+
+
+def atoms_of_actions(task: Task) -> Iterator[Atom]:
+    """Yield the atoms of the goal and of the conditions of actions."""
     conditions = [task.goal]
     for action in task.domain.actions:
         conditions += [action.precondition, *(effect.condition for effect in action.effects)]
-    conditions += [rule.body for rule in task.domain.derived]
     for condition in conditions:
         yield from atoms(condition)

@@ -98,21 +98,25 @@ GUARD = "(not (exists (?o2 - thing ?q - pose) (and (at ?o2 ?q) (not (free ?o ?p 
 @pytest.mark.parametrize(
     "rule",
     [
-        "",
         f"(:derived (ok ?o - thing ?p - pose) {GUARD})",
         "(:derived (ok ?o - thing ?p - pose)"
         " (forall (?o2 - thing ?q - pose) (imply (at ?o2 ?q) (free ?o ?p ?q))))",
     ],
 )
 def test_polarity_is_that_of_the_normal_form(rule: str) -> None:
-    """A condition of its own, or a rule that is unfolded, is a guard as a refuted rule is."""
+    """A rule that is unfolded is a guard as a refuted rule is."""
     domain = DOMAIN.replace("EXTRA", "(ok ?o - thing ?p - pose)").replace("EFFECT", "(thing ?o)")
-    domain = domain.replace("CONDITION", "(ok ?o ?p)" if rule else GUARD)
+    domain = domain.replace("CONDITION", "(ok ?o ?p)")
     domain = domain.replace("(:action put", f"{rule} (:action put")
     functions = dict.fromkeys(("draw", "test"), lambda *values, call: iter(()))
     streams = STREAMS.replace("MORE", "")
     problem = stream_task(domain, streams, functions, {"cup": ("thing",)}, "", "(done)")
     assert names(problem) == {"free": "test"}
+
+
+def test_an_actions_own_guard_is_none_where_streams_say_what_a_test_may_be_asked_of() -> None:
+    """The action takes objects of the type as well, of which no stream has said it."""
+    assert names(task(condition=GUARD)) == {}
 
 
 def test_a_test_that_must_hold_within_a_refuted_rule_is_not() -> None:

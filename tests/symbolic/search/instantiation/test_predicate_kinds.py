@@ -5,7 +5,7 @@ from __future__ import annotations
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.pddl.structs import Atom
 from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
-from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
+from tamp.symbolic.search.instantiation.predicate_kinds import NOTHING, Assumed, PredicateKinds
 
 DOMAIN = """
 (define (domain d)
@@ -23,7 +23,7 @@ PROBLEM = """
 """
 
 
-def kinds(assumed: frozenset[str] = frozenset()) -> PredicateKinds:
+def kinds(assumed: Assumed = NOTHING) -> PredicateKinds:
     domain = parse_domain(DOMAIN)
     task = parse_task(PROBLEM, domain)
     normalizer = Normalizer(domain)
@@ -38,7 +38,7 @@ def test_fluents_are_what_actions_change_and_rules_in_circles_are_recursive() ->
 
 def test_a_static_fact_holds_when_it_is_known_or_assumed_and_not_refused() -> None:
     assert kinds().may_hold(("road", "a", "b")) and not kinds().may_hold(("road", "b", "a"))
-    made = kinds(frozenset({"road"}))
+    made = kinds({"road": ()})
     assert made.may_hold(("road", "b", "a"))
     made.refused = frozenset({("road", "b", "a"), ("road", "a", "b")})
     assert not made.may_hold(("road", "b", "a"))
