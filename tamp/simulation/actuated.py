@@ -15,6 +15,7 @@ from tamp.simulation.actuation import (
     BETWEEN_FINGERS_M,
     COMMANDS_PER_SECOND,
     MotorSimulation,
+    contact_pair,
 )
 from tamp.simulation.fingers import Fingers, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
@@ -146,9 +147,9 @@ class BulletMotors(BulletWorld, MotorSimulation):
             second = self._owners.get((point[2], point[4]))
             if first is None or second is None or first == second:
                 continue
-            if second in self.robot_links or (first not in self.robot_links and second < first):
-                first, second = second, first
-            found[first, second] = found.get((first, second), 0.0) + float(point[9])
+            of_robot = point[1] == self._mover, point[2] == self._mover
+            pair = contact_pair(first, second, of_robot, self.robot_links)
+            found[pair] = found.get(pair, 0.0) + float(point[9])
         return found
 
     def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:

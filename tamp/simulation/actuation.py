@@ -22,6 +22,23 @@ FINGER_SPEED = 0.05
 """Metres a second of each finger."""
 
 
+def contact_pair(
+    first: str, second: str, of_robot: tuple[bool, bool], links: frozenset[str]
+) -> tuple[str, str]:
+    """Order what is in contact: the robot's link before a body, two bodies by their names, but one
+    that is named as a link is ("base" is a good name for the lowest of a tower) last.
+
+    Args:
+        first, second: Names.
+        of_robot: Whether each is a link of the robot.
+        links: Names of all its links.
+    """
+    if of_robot[0] != of_robot[1]:
+        return (first, second) if of_robot[0] else (second, first)
+    low, high = sorted((first, second), key=lambda name: (name in links, name))
+    return low, high
+
+
 class MotorSimulation(World):
     """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
     have mass and fall.

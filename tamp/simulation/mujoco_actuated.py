@@ -19,6 +19,7 @@ from tamp.simulation.actuation import (
     COMMANDS_PER_SECOND,
     FINGER_SPEED,
     MotorSimulation,
+    contact_pair,
 )
 from tamp.simulation.mobile_urdf import BASE_JOINTS
 from tamp.simulation.mujoco_model import (
@@ -184,9 +185,9 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
             first, second = self._owner_of[a], self._owner_of[b]
             if first == second:
                 continue
-            if self._is_link[b] or (not self._is_link[a] and second < first):
-                first, second = second, first
-            found[first, second] = found.get((first, second), 0.0) + float(forces[row])
+            of_robot = bool(self._is_link[a]), bool(self._is_link[b])
+            pair = contact_pair(first, second, of_robot, self.robot_links)
+            found[pair] = found.get(pair, 0.0) + float(forces[row])
         return found
 
     def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
