@@ -227,7 +227,7 @@ def test_an_interrupt_inside_a_stream(
 def test_an_interrupt_before_planning(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
-            "tamp.planner.problem.load_scene", lambda *_: signal.raise_signal(signal.SIGINT)
+            "tamp.planner.problem_files.load_scene", lambda *_: signal.raise_signal(signal.SIGINT)
         )
         assert run(["one_object", "--out", str(tmp_path / "plan.json")]) == INTERRUPTED
     assert capsys.readouterr() == ("", "interrupted\n")
