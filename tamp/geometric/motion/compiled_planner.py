@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M, Arrangement
-from tamp.geometric.motion.tree_kernel import connected
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
@@ -83,6 +82,9 @@ def connect_compiled(
         exactly one of `goals` (up to whole turns of the coordinate that wraps); or None. And the
         number of edges asked for.
     """
+    # Compiled with the first search, since most motions are straight lines.
+    from tamp.geometric.motion.tree_kernel import connected
+
     tries, patience = (0, 0) if shortening is None else (shortening.tries, shortening.patience)
     asked, planting = 0, 0
     while asked < checks and not deadline.passed:
