@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.datalog import Row
 from tamp.symbolic.search.instantiation.lazy_guards import DerivedGuards, LazyGuards
-from tamp.symbolic.search.operators import Axiom, Guard, InstantiatedTask, Operator
+from tamp.symbolic.search.operators import Axiom, Facts, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,15 @@ def lasting(instantiated: InstantiatedTask) -> Lasting:
     alive = list(instantiated.operators)
     forbidden: list[tuple[Operator, frozenset[Fact]]] = []
     rules = [axiom for axiom in instantiated.axioms if not axiom.negative]
-    refused: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
+    possible = instantiated.initial | instantiated.reachable
+    final: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
     while True:
         facts = set(instantiated.initial - _deleted(alive))
         causes = _derive(facts, rules)
         kept: list[Operator] = []
         for operator in alive:
             against = set(operator.negative & facts)
-            for guard in _final(operator, refused):
+            for guard in _final(operator, possible, final):
                 against |= guard.facts if guard.facts <= facts else set()
             if against:
                 forbidden.append((operator, frozenset(against)))
@@ -57,11 +58,12 @@ def forbidden_by(
     """List the operators that a state forbids whatever streams give, and what must be absent."""
     state = set(facts)
     _derive(state, [axiom for axiom in instantiated.axioms if not axiom.negative])
-    refused: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
+    possible = facts | instantiated.reachable
+    final: dict[DerivedGuards, dict[Row, list[Guard]]] = {}
     found: list[tuple[Operator, frozenset[Fact]]] = []
     for operator in instantiated.operators:
         against = set(operator.negative & state)
-        for guard in _final(operator, refused):
+        for guard in _final(operator, possible, final):
             against |= guard.facts if guard.facts <= state else set()
         if against:
             found.append((operator, frozenset(against)))
@@ -69,17 +71,17 @@ def forbidden_by(
 
 
 def _final(
-    operator: Operator, refused: dict[DerivedGuards, dict[Row, list[Guard]]]
+    operator: Operator, possible: Facts, final: dict[DerivedGuards, dict[Row, list[Guard]]]
 ) -> Iterator[Guard]:
     """List an operator's guards that nothing waives; those that only a price asks for stay away."""
     guards = operator.guards
     if isinstance(guards, LazyGuards):
         for source, row in guards.blocked:
-            if source not in refused:
-                rows = refused[source] = dict[Row, list[Guard]]()
-                for one, guard in source.refused():
+            if source not in final:
+                rows = final[source] = dict[Row, list[Guard]]()
+                for one, guard in source.unwaivable(possible):
                     rows.setdefault(one, []).append(guard)
-            yield from refused[source].get(row, ())
+            yield from final[source].get(row, ())
         guards = guards.made
     yield from (guard for guard in guards if guard.waived_by is None)
 

@@ -252,8 +252,9 @@ class Successors:
             self._blocked = blocked
             return
         priced = sorted(fact for fact, price in self._listed.items() if price > 0.0)
+        facts = self.instantiated.reachable | self.instantiated.initial
         for source, owners in blocked.items():
-            for row, guard in (*source.waived_by(priced), *source.refused()):
+            for row, guard in (*source.waived_by(priced), *source.unwaivable(facts)):
                 for index in owners.get(row, ()):
                     self._guarded.setdefault(guard.facts, []).append((index, guard.waived_by))
 

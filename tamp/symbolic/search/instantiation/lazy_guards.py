@@ -98,9 +98,38 @@ class DerivedGuards:
             self._absent, [fact for fact in facts if fact[0] == self._absent.predicate]
         )
 
-    def refused(self) -> Iterator[tuple[Row, Guard]]:
-        """Find the guards that nothing waives."""
-        return self.waived_by(sorted(self._predicates.refused))
+    def unwaivable(self, facts: Iterable[Fact]) -> Iterator[tuple[Row, Guard]]:
+        """Find the guards, with their rows, that nothing waives: what would is refused, or is never
+        asked for want of facts that it needs (see `Assumed`).
+
+        Args:
+            facts: The fluent facts that may come about.
+        """
+        yield from self.waived_by(sorted(self._predicates.refused))
+        needs = [
+            (predicate, tuple(self._absent.terms[place] for place in places))
+            for predicate, places in self._predicates.assumed[self._absent.predicate]
+        ]
+        by_row = [need for need in needs if set(need[1]) <= set(self._head.terms)]
+        by_fact = [need for need in needs if set(need[1]) <= set(self._fluent.terms)]
+        is_by_both = len({*by_row, *by_fact}) < len({*needs})
+
+        for row in sorted(self._predicates.relations.rows(self._rows.predicate)):
+            if is_by_both or self._lacks(by_row, self._head, row):
+                yield from ((row, guard) for guard in self.of(row) if guard.waived_by is None)
+        if by_fact and not is_by_both:
+            for fact in sorted(fact for fact in facts if fact[0] == self.fluent):
+                if self._lacks(by_fact, self._fluent, fact[1:]):
+                    yield from self.on(fact)
+
+    def _lacks(self, needs: list[tuple[str, Row]], atom: Atom, terms: Row) -> bool:
+        """Check whether one of the needed facts, over the terms of an atom, is not known."""
+        binding = dict(zip(atom.terms, terms, strict=True))
+        rows = self._predicates.relations.rows
+        return any(
+            tuple(binding[term] for term in needed) not in rows(predicate)
+            for predicate, needed in needs
+        )
 
     def _match(self, atom: Atom, facts: list[Fact]) -> Iterator[tuple[Row, Guard]]:
         """Find the guards of registered rows for which the atom is one of the facts."""

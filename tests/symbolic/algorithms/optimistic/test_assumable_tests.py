@@ -98,15 +98,16 @@ GUARD = "(not (exists (?o2 - thing ?q - pose) (and (at ?o2 ?q) (not (free ?o ?p 
 @pytest.mark.parametrize(
     "rule",
     [
+        "",
         f"(:derived (ok ?o - thing ?p - pose) {GUARD})",
         "(:derived (ok ?o - thing ?p - pose)"
         " (forall (?o2 - thing ?q - pose) (imply (at ?o2 ?q) (free ?o ?p ?q))))",
     ],
 )
 def test_polarity_is_that_of_the_normal_form(rule: str) -> None:
-    """A rule that is unfolded is a guard as a refuted rule is."""
+    """A condition of its own, or a rule that is unfolded, is a guard as a refuted rule is."""
     domain = DOMAIN.replace("EXTRA", "(ok ?o - thing ?p - pose)").replace("EFFECT", "(thing ?o)")
-    domain = domain.replace("CONDITION", "(ok ?o ?p)")
+    domain = domain.replace("CONDITION", "(ok ?o ?p)" if rule else GUARD)
     domain = domain.replace("(:action put", f"{rule} (:action put")
     functions = dict.fromkeys(("draw", "test"), lambda *values, call: iter(()))
     streams = STREAMS.replace("MORE", "")
@@ -114,9 +115,46 @@ def test_polarity_is_that_of_the_normal_form(rule: str) -> None:
     assert names(problem) == {"free": "test"}
 
 
-def test_an_actions_own_guard_is_none_where_streams_say_what_a_test_may_be_asked_of() -> None:
-    """The action takes objects of the type as well, of which no stream has said it."""
-    assert names(task(condition=GUARD)) == {}
+APT = """
+(define (domain places)
+  (:types thing pose)
+  (:predicates (apt ?o - thing ?p - pose) (at ?o - thing ?p - pose)
+    (free ?o - thing ?p - pose ?q - pose) (done) (blocked ?o - thing ?p - pose))
+  (:derived (blocked ?o - thing ?p - pose)
+    (exists (?o2 - thing ?q - pose) (and (at ?o2 ?q) (not (free ?o ?p ?q)))))
+  (:action put :parameters (?o - thing ?p - pose)
+    :precondition (and (apt ?o ?p) CLEAR) :effect (and (at ?o ?p) (done))))
+"""
+APT_STREAMS = """
+(define (stream places)
+  (:stream draw :inputs (?o) :domain (thing ?o) :outputs (?p) :certified (apt ?o ?p))
+  (:stream test :inputs (?o ?p ?q) :domain (and (apt ?o ?p) (apt ?o ?q))
+    :certified (free ?o ?p ?q)))
+"""
+
+
+@pytest.mark.parametrize("clear", ["(not (blocked ?o ?p))", GUARD])
+@pytest.mark.parametrize("algorithm", ["adaptive", "incremental"])
+@pytest.mark.parametrize("apt", ["", "(apt cup p0) (apt box p0)"])
+def test_a_test_is_asked_of_nothing_outside_of_its_domain(
+    clear: str, algorithm: str, apt: str
+) -> None:
+    """No stream says (apt cup p0): that cup is free of what stands at p0 cannot be certified."""
+
+    def draw(o: str, call: object) -> Iterator[tuple[object, ...]]:
+        yield ((o, "drawn"),)
+
+    problem = stream_task(
+        APT.replace("CLEAR", clear),
+        APT_STREAMS,
+        {"draw": draw, "test": lambda *values, call: True},
+        {"cup": ("thing",), "box": ("thing",), "p0": ("pose",)},
+        f"(at box p0) {apt}",
+        "(done)",
+    )
+    assert names(problem) == {"free": "test"}
+    result = solve(algorithm, problem)
+    assert result.outcome is (Outcome.SOLVED if apt else Outcome.INFEASIBLE)
 
 
 def test_a_test_that_must_hold_within_a_refuted_rule_is_not() -> None:
@@ -138,7 +176,9 @@ def test_what_must_be_given_is_looked_up() -> None:
     )
     problem = task(streams=streams)
     found = assumable(problem.streams, problem.task)
-    assert given_for(found, problem.streams, problem.task) == {"free": [("given", (0,))]}
+    assert given_for(found, problem.streams, problem.task) == {
+        "free": [("given", (0,)), ("pose", (0, 1)), ("pose", (0, 2))]
+    }
 
 
 PLACES = """
