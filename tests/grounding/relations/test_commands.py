@@ -17,18 +17,23 @@ from tamp.planner.report import summary
 from tamp.verification.verify import verify
 from tests.grounding.relations.shown import beside, write_demos
 
-PROBLEM = """
+ROOM = """
 domain: mine.pddl
 robot: {{model: panda_mobile, base: [0.0, 0.0, 0 deg]}}
 room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
 samplers: {{left_of: left_of.safetensors}}
 bodies:
   table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: -90 deg}}
-  sideboard: {{furniture: table, size: [0.9, 0.5, 0.6], at: [-1.6, 0.4, 0.0], yaw: 90 deg}}
+  sideboard: {{furniture: table, size: [0.9, 0.5, 0.6], at: [-1.6, 0.4, 0.0], yaw: 90 deg}}"""
+
+PROBLEM = (
+    ROOM
+    + """
   plate: {{cylinder: {{radius: 0.08, height: 0.02}}, on: table, at: [0.1, -0.1]}}
   cup: {{cylinder: {{radius: 0.035, height: 0.1}}, on: {on}}}
 goal: {goal}
 """
+)
 
 
 @pytest.fixture(scope="module")
@@ -91,19 +96,15 @@ def test_a_plan_makes_it_true_and_the_judge_agrees(
         assert "place  cup  left_of plate" in summary(solution)
 
 
-CHAIN = """
-domain: mine.pddl
-robot: {{model: panda_mobile, base: [0.0, 0.0, 0 deg]}}
-room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
-samplers: {{left_of: left_of.safetensors}}
-bodies:
-  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: -90 deg}}
-  sideboard: {{furniture: table, size: [0.9, 0.5, 0.6], at: [-1.6, 0.4, 0.0], yaw: 90 deg}}
+CHAIN = (
+    ROOM
+    + """
   saucer: {{cylinder: {{radius: 0.038, height: 0.04}}, on: sideboard, at: [0.3, 0.0]}}
   cup: {{cylinder: {{radius: 0.035, height: 0.1}}, on: sideboard, at: [-0.3, 0.1]}}
   glass: {{cylinder: {{radius: 0.03, height: 0.12}}, on: table, at: [0.3, 0.0]}}
 goal: {goal}
 """
+)
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.pddl.structs import Atom, Task
 from tamp.symbolic.search.instantiation.effects import lifted_effects
-from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
+from tamp.symbolic.search.instantiation.normal_form import Normalizer
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 
 Certifiers = Mapping[str, Sequence[tuple[BoundStream, Atom]]]
@@ -123,32 +123,17 @@ def guard_lifters(task: Task) -> frozenset[str]:
         roots += [c for one in lifted_effects(action, normalizer) for c in one.conditions]
 
     recursive = PredicateKinds(task, normalizer).recursive()  # refuted state by state
+    conjunctions = [(literals, False) for literals in roots]
+    for name, refuted in normalizer.polarities(roots, recursive):
+        conjunctions += [(rule.literals, refuted) for rule in normalizer.definitions[name]]
+
     lifting: set[str] = set()
     others: set[str] = set()
-    rules: dict[tuple[str, bool], None] = {}
-
-    def walk(literals: Literals, refuted: bool) -> None:
-        for sign, part in ((True, literals.positive), (False, literals.negative)):
-            for name in (atom.predicate for atom in part):
-                if name not in normalizer.definitions:
-                    (lifting if refuted and not sign else others).add(name)
-                    continue
-                if sign or refuted:
-                    rules.setdefault((name, False))  # a join goes over the facts that hold
-                if sign is refuted:
-                    rules.setdefault((name, True))
-
-    for literals in roots:
-        walk(literals, False)
-    done = 0
-    while done < len(rules):
-        name, refuted = list(rules)[done]
-        done += 1
-        if refuted and name in recursive and not name.startswith("forall "):
-            rules.setdefault((name, False))
-        for definition in normalizer.definitions[name]:
-            walk(definition.literals, refuted)
-    return frozenset(lifting - others)
+    for literals, refuted in conjunctions:
+        others.update(atom.predicate for atom in literals.positive)
+        negated = lifting if refuted else others
+        negated.update(atom.predicate for atom in literals.negative)
+    return frozenset(lifting - others - normalizer.definitions.keys())
 
 
 def atoms_of(task: Task) -> Iterator[Atom]:

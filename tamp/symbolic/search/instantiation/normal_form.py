@@ -236,6 +236,15 @@ class Normalizer:
             roots: All conjunctions in which an action or the goal uses predicates.
             recursive: Predicates whose negation is evaluated on states.
         """
+        wanted = self.polarities(roots, recursive)
+        return [name for name in self.definitions if (name, False) in wanted]
+
+    def polarities(
+        self, roots: Iterable[Literals], recursive: frozenset[str]
+    ) -> dict[tuple[str, bool], None]:
+        """Return the predicates that have rules, each with whether its rules are to be refuted: for
+        the roots, which are to hold, and for one another. The arguments are those of `reached`.
+        """
         wanted: dict[tuple[str, bool], None] = {}
         for literals in roots:
             self._want(literals, False, wanted)
@@ -247,7 +256,7 @@ class Normalizer:
                 wanted.setdefault((name, False))
             for rule in self.definitions[name]:
                 self._want(rule.literals, refuted, wanted)
-        return [name for name in self.definitions if (name, False) in wanted]
+        return wanted
 
     def _want(
         self, literals: Literals, refuted: bool, wanted: dict[tuple[str, bool], None]
