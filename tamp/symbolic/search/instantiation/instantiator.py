@@ -30,7 +30,7 @@ class Instantiator:
     Args:
         task: Gives actions, derived rules, the initial state, the goal, costs.
         assumed: Static predicates of tests that are taken to hold, without listing their facts,
-            where they would waive a guard; each with what must be given for that (`Assumed`).
+            where they would waive a guard; each with what has to be known (`Assumed`).
     """
 
     def __init__(self, task: Task, assumed: Assumed = NOTHING) -> None:

@@ -20,8 +20,8 @@ from tamp.symbolic.search.instantiation.normal_form import (
 from tamp.symbolic.search.operators import ANY
 
 Assumed = Mapping[str, Sequence[tuple[str, tuple[int, ...]]]]
-"""Predicates that are taken to hold, each with the static facts that must be given: predicates, and
-which of its terms these are about."""
+"""Predicates that are taken to hold, each with the static facts that have to be known for that:
+predicates, and which of its terms these are about."""
 
 NOTHING: Assumed = MappingProxyType({})
 
@@ -50,8 +50,8 @@ class PredicateKinds:
         recursive: Derived predicates that depend on themselves.
         relations: Rows of every predicate; the initial state's rows of the fluent ones.
         certain: Static facts of the initial state: no stream is needed for them.
-        assumed: Static predicates whose facts are taken to hold unless refused, each with what must
-            be given of their terms.
+        assumed: Static predicates whose facts are taken to hold unless refused, each with what
+            has to be known of their terms.
         refused: Facts of those that do not hold.
         given: Facts of derived predicates that were given nevertheless.
     """
