@@ -274,7 +274,7 @@ def main(options: Options) -> int:
         "exit status:", dict(Counter({code: sum(n for (_, c), n in codes.items() if c == code) for _, code in codes}))
     )
     if options.record:
-        record("bad_inputs", seed=options.seed, cases=cases, failures=len(failures))
+        record("bad_inputs.jsonl", seed=options.seed, cases=cases, failures=len(failures))
     return len(failures)
 
 

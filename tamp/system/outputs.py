@@ -57,7 +57,7 @@ def write_whole(path: Path, content: bytes) -> None:
     if _is_device(path):
         _write_device(path, content)
         return
-    path = Path(os.path.realpath(path))
+    path = _followed(path)
     made = _make_folder(path.parent)
     try:
         _replace(path, content)
@@ -66,6 +66,13 @@ def write_whole(path: Path, content: bytes) -> None:
             with contextlib.suppress(OSError):
                 folder.rmdir()
         raise
+
+
+def _followed(path: Path) -> Path:
+    """Return what a chain of links leads to, which need not exist; OSError where it is a circle."""
+    with contextlib.suppress(FileNotFoundError):
+        path.stat()
+    return Path(os.path.realpath(path))
 
 
 def check_writable(path: Path, option: str = "--out") -> None:
@@ -91,7 +98,7 @@ def check_writable(path: Path, option: str = "--out") -> None:
                 raise InputError("the output is not a regular file", file=path, remedy=elsewhere)
             _check_mode(path)
 
-        folder = Path(os.path.realpath(path)).parent
+        folder = _followed(path).parent
         while not folder.exists():
             folder = folder.parent
         with tempfile.TemporaryFile(dir=folder):  # the only test that root, too, can trust

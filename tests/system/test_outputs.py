@@ -321,3 +321,18 @@ def test_a_folder_of_the_users_is_not_removed(
     )
     assert "is in the way" in capsys.readouterr().err
     assert (mine / "diary").is_file()
+
+
+def test_links_in_a_circle_are_refused_and_stay(tmp_path: Path) -> None:
+    circle, dangling = tmp_path / "circle", tmp_path / "dangling"
+    circle.symlink_to("circle")
+    dangling.symlink_to("new.txt")
+    with pytest.raises(InputError, match="circle: the output cannot be written"):
+        check_writable(circle)
+    with pytest.raises(OSError, match="symbolic links"):
+        write_whole(circle, b"text")
+    assert circle.is_symlink()
+
+    check_writable(dangling)
+    write_whole(dangling, b"text")
+    assert dangling.is_symlink() and (tmp_path / "new.txt").read_bytes() == b"text"
