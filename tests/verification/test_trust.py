@@ -191,7 +191,7 @@ def test_streams_that_changed_since_and_misfit_are_left_out(domain: Domain, tmp_
     file = tmp_path / "d.streams.pddl"
     file.write_text(STREAMS)
     read = read_streams(plan_of(), file, domain)
-    assert read is not None and [one.name for one in read.streams][0] == "test-clean"
+    assert read is not None and next(one.name for one in read.streams) == "test-clean"
     assert read_streams(plan_of(), None, domain) is None
 
     file.write_text("(define (stream d) (:stream s :inputs (?x) :certified (unheard ?x)))")
