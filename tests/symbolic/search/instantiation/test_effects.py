@@ -108,6 +108,19 @@ def test_what_cannot_come_about_is_left_out(condition: str, before: str) -> None
     assert effect_of(effect, before=before, reached="lamp a") == (frozenset(), frozenset(), ())
 
 
+def test_a_condition_that_only_forbids_is_one() -> None:
+    (one,) = effect_of("(when (not (lamp ?p)) (dry ?p))", reached="lamp a")[2]
+    assert one == ConditionalEffect(frozenset(), facts("lamp a"), facts("dry a"), frozenset())
+
+
+def test_a_negated_derived_fact_that_always_holds_leaves_nothing() -> None:
+    rules = "(:derived (dark ?p - place) (not (lamp ?p)))"
+    effect = "(when (not (dark ?p)) (dry ?p))"
+    assert effect_of(effect, rules=rules) == (frozenset(), frozenset(), ())
+    (one,) = effect_of(effect, rules=rules, reached="lamp a")[2]
+    assert one.positive == facts("lamp a")
+
+
 def test_deleting_what_is_absent_changes_nothing_so_it_needs_no_condition() -> None:
     found = effect_of("(when (dry ?p) (not (dry ?p)))", reached="dry a")
     assert found == (frozenset(), facts("dry a"), ())
