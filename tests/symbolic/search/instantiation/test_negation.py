@@ -44,6 +44,35 @@ def test_a_rule_of_two_fluents_is_a_guard_that_nothing_waives() -> None:
     assert refuted(made, "jam b") == Needs()
 
 
+def test_each_pair_is_a_guard_of_its_own() -> None:
+    reached = "at box a, at cup a, at pan a"
+    made = parts(JAM, reached=reached, objects="box cup pan - thing a b c - place")
+    assert {guard.facts for guard in refuted(made, "jam a").guards} == {
+        facts("at box a, at cup a"),
+        facts("at box a, at pan a"),
+        facts("at cup a, at pan a"),
+    }
+
+
+def test_a_static_fact_that_came_along_later_waives_like_a_tests() -> None:
+    rule = """(:derived (jam ?p - place)
+        (exists (?x - thing) (and (at ?x ?p) (not (near ?p ?p)))))"""
+    made = parts(rule, "(near b b)", "at box a, at cup a, at box b, at box c")
+    made.predicates.add([fact("near a a")], {})
+    waived = [Guard(facts(f"at {name} a"), fact("near a a")) for name in ("box", "cup")]
+    assert refuted(made, "jam a").guards == waived
+    assert refuted(made, "jam b") == Needs()
+    assert refuted(made, "jam c") == Needs(negative=[fact("at box c")])
+
+
+def test_guards_of_a_derived_fact_in_the_rule_stay_guards() -> None:
+    rule = JAM + "(:derived (hot ?p - place) (and (jam ?p) (near ?p ?p)))"
+    made = parts(rule, "(near a a)", "at box a, at cup a, jam a")
+    needs = refuted(made, "hot a")
+    assert {guard.facts for guard in needs.guards} == {facts("at box a, at cup a")}
+    assert not needs.positive
+
+
 def test_where_guards_are_not_allowed_they_become_a_choice() -> None:
     made = parts(JAM, reached="at box a, at cup a")
     needs = refuted(made, "jam a", guards=False)
