@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -17,7 +17,7 @@ PLAN = Plan((), 1.0)
 class Scripted:
     """In the place of packed searches: notes what is asked, finds a plan at the n-th question."""
 
-    asked: list[tuple[int, tuple[str, ...], bool, int, int]] = []
+    asked: ClassVar[list[tuple[int, tuple[str, ...], bool, int, int]]] = []
     made = 0
     found_at = 0
 
