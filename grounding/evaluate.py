@@ -102,8 +102,8 @@ def evaluate(
                     published_oracle(situation, drawn, near).sum() for near in (NEAR, CLOUD_NEAR_M)
                 ]
 
-            known = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
-            feasible += known or verdict is Verdict.HOLDS
+            possible = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
+            feasible += possible or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
 

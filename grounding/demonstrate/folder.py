@@ -191,9 +191,9 @@ class DemonstrationFolder:
     def _card(self, file: Path) -> Card:
         state = file.stat()
         stamp = (state.st_mtime_ns, state.st_size)
-        known = self._cards.get(file.name)
-        if known is not None and known.stamp == stamp:
-            return known
+        cached = self._cards.get(file.name)
+        if cached is not None and cached.stamp == stamp:
+            return cached
         try:
             loaded = load_scene(file, demonstration=True)
             labels = read_labels(loaded, self.relation)

@@ -104,7 +104,7 @@ class _Run:
         self._replans = self._kept = 0
         self._explanation: tuple[str, ...] = ()
         self._event: str | None = None
-        self._known = frozenset(world.scene.bodies)
+        self._planned_for = frozenset(world.scene.bodies)
 
     def all(self) -> None:
         """Execute every action of the plan, and of those that take its place."""
@@ -228,12 +228,14 @@ class _Run:
         world, expected = self._world, self._expected
         poses = {name: world.pose(name) for name in world.scene.movable}
         seen = Seen(poses, self._held(), world.tool(), truth.facts)
-        new = frozenset(world.scene.bodies) - self._known
-        known = {name: T for name, T in expected.poses.items() if name in self._known}
-        words = {name.lower() for name in known}
+        new = frozenset(world.scene.bodies) - self._planned_for
+        poses_expected = {
+            name: T for name, T in expected.poses.items() if name in self._planned_for
+        }
+        words = {name.lower() for name in poses_expected}
         facts = frozenset(fact for fact in expected.facts if fact[1] in words)
         facts |= self._own.missed(truth, self._held(), expected)
-        return list(deviations(known, expected.held, facts, seen, active, new))
+        return list(deviations(poses_expected, expected.held, facts, seen, active, new))
 
     def _come_to_rest(self) -> None:
         """Wait for bodies that fall or roll, not for ever."""
@@ -270,7 +272,7 @@ class _Run:
         mended = replanner.mend(truth, grasp, self._plan, self._queue, found, self._expected)
         if mended.keeps:
             self._kept += 1
-            self._known = frozenset(world.scene.bodies)
+            self._planned_for = frozenset(world.scene.bodies)
             self._expected.accept({name: world.pose(name) for name in world.scene.movable})
             return "the rest of the plan still holds"
 
@@ -281,6 +283,6 @@ class _Run:
             return f"no plan from here: {'; '.join(mended.explanation)}"
 
         self._replans += 1
-        self._known = frozenset(world.scene.bodies)
+        self._planned_for = frozenset(world.scene.bodies)
         self._begin(mended.plan)
         return f"planned anew: {len(mended.plan.actions)} actions"

@@ -165,11 +165,11 @@ def named_classifiers(
 def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Iterable[str]:
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
     sampled = [stream.name.removeprefix("sample-") for stream in streams.streams if stream.outputs]
-    known = {*planned, *classifiers, *sampled}
+    named = {*planned, *classifiers, *sampled}
     return [
         name
         for name in relation_names(streams)
-        if name in known and name not in SAMPLERS and f"sample-{name}" not in STREAMS
+        if name in named and name not in SAMPLERS and f"sample-{name}" not in STREAMS
     ]
 
 

@@ -136,8 +136,8 @@ def _start(plan: PlanFile, robot: Robot) -> Array:
         for fact in plan.initial
         if fact[0] == predicate and len(fact) == 2
     ]
-    known = [value.data for value in places if value is not None and value.type == "base-conf"]
-    base = known[0] if known else np.zeros(3)
+    confs = [value.data for value in places if value is not None and value.type == "base-conf"]
+    base = confs[0] if confs else np.zeros(3)
     arm, opening = np.array(robot.home), robot.opening
     segments = [segment for action in plan.actions for segment in action.segments]
     for segment in reversed(segments):

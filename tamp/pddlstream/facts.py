@@ -202,19 +202,19 @@ def _parts(item: Any, what: str) -> tuple[str, tuple[Any, ...]]:
     return str(head).lower(), tuple(rest)
 
 
-def _unknown(name: str, known: Mapping[str, Any]) -> bool:
+def _unknown(name: str, declared: Mapping[str, Any]) -> bool:
     """Check that it is none of them, nor looks like one of them misspelt."""
-    return name not in known and closest(name, known) is None
+    return name not in declared and closest(name, declared) is None
 
 
 def _check(
-    name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any
+    name: str, count: int, domain: Domain, declared: Mapping[str, Any], what: str, item: Any
 ) -> None:
-    if name not in known:
+    if name not in declared:
         raise InputError(
-            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known
+            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=declared
         )
-    wanted = len(known[name].parameters)
+    wanted = len(declared[name].parameters)
     if wanted != count:
         raise InputError(
             f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}"

@@ -254,12 +254,12 @@ def _check_map(
                 found=one.name,
                 choices=functions,
             )
-    known = [one.name for one in declared]
+    names = [one.name for one in declared]
     for name in functions:
-        if name not in known:
+        if name not in names:
             message = f"the stream map has '{name}', which no stream is called"
-            if closest(name, known) is not None:
-                raise InputError(message, found=name, choices=known)
+            if closest(name, names) is not None:
+                raise InputError(message, found=name, choices=names)
             yield message
 
 

@@ -141,12 +141,14 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     """Map body and pose names to the place: what a fact such as (supported mug p1 table) says."""
     problem = solution.problem
     scene = problem.scene
-    known = {place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)}
+    scene_names = {
+        place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)
+    }
     places: dict[tuple[str, str], str] = {}
     facts = (*sorted(problem.stream_task.task.initial), *solution.certified)
     for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
-        if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
-            name = known[fact[3]]
+        if len(fact) == 4 and fact[3] in scene_names and fact[3] not in solution.values:
+            name = scene_names[fact[3]]
             places.setdefault(
                 (fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}"
             )

@@ -35,17 +35,17 @@ def bind(
     Raises:
         InputError: Another stream without a function, or a :predicate.
     """
-    known = {**STREAMS, **functions}
+    available = {**STREAMS, **functions}
 
     bound: list[BoundStream] = []
     for stream in declared.streams:
-        if stream.name not in known and stream.name in unasked:
+        if stream.name not in available and stream.name in unasked:
             continue
-        if stream.name not in known:
-            raise without_function(stream, declared.file, known)
+        if stream.name not in available:
+            raise without_function(stream, declared.file, available)
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
-        bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
+        bound.append(BoundStream(stream, partial(available[stream.name], context), outputs))
 
     _refuse_decided(declared)
     return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))

@@ -35,7 +35,7 @@ class SupportRelations:
     """
 
     def __init__(
-        self, plan: PlanFile, world: World, semantics: Semantics, known: set[str], log: Log
+        self, plan: PlanFile, world: World, semantics: Semantics, checkable: set[str], log: Log
     ) -> None:
         self._plan, self._world, self._semantics, self._log = plan, world, semantics, log
         self._supports = Supports(world)
@@ -49,7 +49,7 @@ class SupportRelations:
         self._relations = [
             fact
             for fact in facts
-            if fact[0] in known and len(fact) == SUPPORT_PREDICATES.get(fact[0])
+            if fact[0] in checkable and len(fact) == SUPPORT_PREDICATES.get(fact[0])
         ]
         self._checked: set[Fact] = set()
 

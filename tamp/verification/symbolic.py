@@ -141,8 +141,8 @@ def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
     if not isinstance(action.cost, Atom):
         return float(action.cost)
     binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
-    known: Mapping[Fact, float] = task.costs
-    return known.get(ground(action.cost, binding))
+    costs: Mapping[Fact, float] = task.costs
+    return costs.get(ground(action.cost, binding))
 
 
 def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path:

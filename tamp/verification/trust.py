@@ -110,7 +110,7 @@ def trusted_relations(
     domain: Domain,
     goal: Formula,
     streams: StreamFile | None,
-    known: Collection[str],
+    decided: Collection[str],
     given: Collection[Fact],
 ) -> tuple[str, ...]:
     """List relations that goal and actions rest on, and about which only the plan says what holds.
@@ -123,7 +123,7 @@ def trusted_relations(
         domain: Its domain.
         goal: Its goal.
         streams: Its streams, where they are known.
-        known: Predicates that the judge decides by itself.
+        decided: Predicates that the judge decides by itself.
         given: The initial facts that the problem states.
     """
     names = _names(streams, domain)
@@ -136,7 +136,7 @@ def trusted_relations(
     )
 
     settled = {
-        *known,
+        *decided,
         *domain.fluent_predicates,
         *domain.derived_predicates,
         *KINDS_OF_OBJECTS,

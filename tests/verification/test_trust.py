@@ -75,12 +75,12 @@ def trusted(
     domain: Domain,
     goal: str,
     streams: StreamFile | None = None,
-    known: Collection[str] = (),
+    decided: Collection[str] = (),
     given: Collection[Fact] = (),
     **plan: Any,
 ) -> tuple[str, ...]:
     wanted = parse_goal(goal, domain, {"a": ("thing",)})
-    return trusted_relations(plan_of(**plan), domain, wanted, streams, known, given)
+    return trusted_relations(plan_of(**plan), domain, wanted, streams, decided, given)
 
 
 CLEAN, SOAPED, DRY = (("clean", "a"),), (("soaped", "a"),), (("dry", "a"),)
@@ -95,7 +95,7 @@ def test_what_only_the_plan_states_and_the_goal_asks_is_on_trust(domain: Domain)
 
 def test_what_the_problem_states_or_the_judge_decides_is_not_on_trust(domain: Domain) -> None:
     assert trusted(domain, "(clean a)", initial=CLEAN, given=CLEAN) == ()
-    assert trusted(domain, "(clean a)", certified=CLEAN, known={"clean"}) == ()
+    assert trusted(domain, "(clean a)", certified=CLEAN, decided={"clean"}) == ()
 
 
 def test_what_must_not_hold_is_on_trust_where_streams_could_certify_it(

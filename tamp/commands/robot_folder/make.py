@@ -190,13 +190,13 @@ def _parts(hulls: Sequence[Hull]) -> tuple[Part, ...]:
 
 def _refined(robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told) -> Robot:
     """Decompose the links whose hulls meet much more often than they do."""
-    known = {name: some for name, some in meshes.items() if some}
-    wrong = misjudged(robot, known, lambda done: told("hulls against meshes", done))
+    solids = {name: some for name, some in meshes.items() if some}
+    wrong = misjudged(robot, solids, lambda done: told("hulls against meshes", done))
     links: list[Link] = []
     for link in robot.links:
         if link.name in wrong:
             told(f"convex pieces of {link.name}", 0.0)
-            hulls = [hull for one in known[link.name] for hull in pieces(one, link.name)]
+            hulls = [hull for one in solids[link.name] for hull in pieces(one, link.name)]
             link = Link(link.name, _parts(joined(hulls, link.name)))
         links.append(link)
     return replace(robot, links=tuple(links))

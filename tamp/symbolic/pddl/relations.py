@@ -245,7 +245,7 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
     positions = {*POSITIONS}
     for one in domain.predicates.values():
         positions |= {
-            (one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types
+            (one.name, at) for at, declared in enumerate(one.parameters) if POSE in declared.types
         }
     if sample is not None:
         atoms = [

@@ -44,12 +44,12 @@ def astar(search: SearchSpace) -> Plan | None:
         search.count()
         for operator in s.applicable(closed):
             after = s.apply(operator, state, closed)
-            known = search.best.get(after, math.inf)
-            if cost + s.cost[operator] >= known:
+            best = search.best.get(after, math.inf)
+            if cost + s.cost[operator] >= best:
                 continue
             step = s.step_cost(operator, state)
             reached = cost + step
-            if reached >= known:
+            if reached >= best:
                 continue
             search.best[after] = reached
             search.parents[after] = (state, operator)

@@ -229,10 +229,12 @@ class Mutexes:
     def _body(self, positive: Iterable[Fact], negative: Iterable[Fact]) -> tuple[int, ...]:
         literals = [(fact, True) for fact in positive] + [(fact, False) for fact in negative]
         return tuple(
-            sorted(self._number.get(literal, -1) for literal in literals if self._known(literal))
+            sorted(
+                self._number.get(literal, -1) for literal in literals if self._is_watched(literal)
+            )
         )
 
-    def _known(self, literal: Literal) -> bool:
+    def _is_watched(self, literal: Literal) -> bool:
         """Check that a literal is looked at: absences only where the goal wants them."""
         return literal[1] or literal in self._absent
 

@@ -50,9 +50,9 @@ class UnachievableFacts:
     ) -> None:
         self._task, self._streams, self._types = task, streams, types
         self._assumed = frozenset(assumed)
-        self._known = frozenset(facts)
+        self._facts = frozenset(facts)
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
-        for fact in sorted(self._known):
+        for fact in sorted(self._facts):
             self._by_predicate[fact[0]].append(fact)
         self._examined = 0
 
