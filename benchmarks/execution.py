@@ -56,7 +56,8 @@ def run(name: str, seed: int, grasp: str, disturb: str | None, engine: str, opti
     from tamp.execution.command import Options as Chosen
     from tamp.execution.command import carry_out
 
-    solution = tamp.solve(tamp.load_problem(name), max_time=options.time, seed=seed)
+    problem = tamp.load_problem(name, registry=registry())
+    solution = tamp.solve(problem, max_time=options.time, seed=seed)
     if not solution.solved:
         return {"outcome": "no plan", "explanation": list(solution.explanation)}
     with tempfile.TemporaryDirectory() as folder:

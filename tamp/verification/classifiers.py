@@ -53,9 +53,13 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
 def _made(relation: str, file: Path) -> object:
     if file.suffix == ".py":
         return python_object(file)
+    from grounding.registry import GROUNDINGS, LEARNED, file_grounding  # they need numpy only
+
     if file.suffix != ".safetensors":
+        known = GROUNDINGS[relation] if relation in LEARNED else {}
+        if str(file) in known:
+            return known[str(file)]()
         remedy = "Give the classifier's file: FILE.py or FILE.safetensors"
         raise InputError(f"the judge knows no sampler '{file}' for '{relation}'", remedy=remedy)
-    from grounding.registry import file_grounding  # learned ones need numpy only
 
     return file_grounding(relation, file)
