@@ -1,4 +1,4 @@
-; Where the values of carriers.pddl come from. A relation is grounded by two streams: sample-<relation> and test-<relation>.
+; Where the values of learned.pddl come from. A relation is grounded by two streams: sample-<relation> and test-<relation>.
 (define (stream learned)
   (:stream sample-grasp
     :inputs (?o) :domain (movable ?o)

@@ -17,6 +17,7 @@ import random
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import BodyEntry, DemonstrationFile, write_demonstration
@@ -27,6 +28,9 @@ EACH = 12
 
 AIR = 0.001
 """Metres between a body and what it rests on."""
+
+Shape = dict[str, Any]
+"""A body's shape as a problem file has it."""
 
 Scene = tuple[tuple[str, ...], dict[str, BodyEntry]]
 
@@ -41,7 +45,7 @@ class Table:
         size = [round(self.u(1.0, 1.6), 3), round(self.u(0.7, 1.0), 3), self.height]
         self.bodies = {"table": BodyEntry({"furniture": "table", "size": size}, self.front)}
 
-    def put(self, name: str, shape: dict[str, object], x: float, y: float, yaw: float, up: float = 0.0) -> None:
+    def put(self, name: str, shape: Shape, x: float, y: float, yaw: float, up: float = 0.0) -> None:
         """Put a body down: x to the right and y to the rear as seen from the front, `up` over the table."""
         z = self.height + AIR + up + (0.0 if "furniture" in shape else tall(shape) / 2)
         self.bodies[name] = BodyEntry(shape, self.front @ Pose.from_xyz_yaw(x, y, z, yaw))
@@ -50,19 +54,19 @@ class Table:
         """Draw a yaw."""
         return self.u(-math.pi, math.pi)
 
-    def box(self, low: float, high: float, height: tuple[float, float]) -> dict[str, object]:
+    def box(self, low: float, high: float, height: tuple[float, float]) -> Shape:
         """Draw a box whose base's sides are between two lengths, and its height."""
         return {"box": [round(self.u(low, high), 3), round(self.u(low, high), 3), round(self.u(*height), 3)]}
 
-    def can(self, radius: tuple[float, float], height: tuple[float, float]) -> dict[str, object]:
+    def can(self, radius: tuple[float, float], height: tuple[float, float]) -> Shape:
         """Draw a cylinder."""
         return {"cylinder": {"radius": round(self.u(*radius), 3), "height": round(self.u(*height), 3)}}
 
-    def cup(self) -> dict[str, object]:
+    def cup(self) -> Shape:
         """Draw what one drinks from: round or square."""
         return self.can((0.025, 0.045), (0.06, 0.14)) if self.u(0, 1) < 0.7 else self.box(0.05, 0.08, (0.06, 0.14))
 
-    def plate(self) -> dict[str, object]:
+    def plate(self) -> Shape:
         """Draw a plate: a disc, or a square one with a rim, by which a hand can take it."""
         if self.u(0, 1) < 0.5:
             return self.can((0.07, 0.11), (0.015, 0.04))
@@ -70,7 +74,7 @@ class Table:
         return {"furniture": "open_box", "size": [side, side, round(self.u(0.025, 0.05), 3)], "fixed": False}
 
 
-def tall(shape: dict[str, object]) -> float:
+def tall(shape: Shape) -> float:
     """The height of an upright shape."""
     match shape:
         case {"cylinder": {"height": height}} | {"box": [_, _, height]} | {"size": [_, _, height]}:
@@ -78,7 +82,7 @@ def tall(shape: dict[str, object]) -> float:
     raise ValueError(shape)
 
 
-def wide(shape: dict[str, object]) -> float:
+def wide(shape: Shape) -> float:
     """Half its width across, at most."""
     match shape:
         case {"cylinder": {"radius": radius}}:
@@ -93,9 +97,10 @@ def left_of(t: Table, holds: bool, way: int) -> Scene:
     cup, plate, middle = t.cup(), t.plate(), t.u(-0.1, 0.2)
     turn = 0.0 if "size" in plate else t.any_yaw()
     gap, behind, side = t.u(0.05, 0.12), t.u(-0.03, 0.03), -1
-    if not holds:  # too far, behind, in front, right of it
+    if not holds:  # too far, behind, in front (left of its middle as well), right of it
         gap, behind, side = [
-            (t.u(0.2, 0.35), behind, -1), (-0.12, t.u(0.18, 0.3), -1), (-0.12, -t.u(0.18, 0.3), 1), (gap, behind, 1)
+            (t.u(0.2, 0.35), behind, -1), (t.u(-0.06, 0.12), t.u(0.15, 0.3), -1),
+            (t.u(-0.06, 0.12), -t.u(0.15, 0.3), -1), (gap, behind, 1),
         ][way]  # fmt: skip
     t.put("plate", plate, middle, 0.0, turn + t.u(-0.1, 0.1))
     t.put("cup", cup, middle + side * (wide(plate) + gap + wide(cup)), behind, t.any_yaw())
@@ -105,7 +110,7 @@ def left_of(t: Table, holds: bool, way: int) -> Scene:
 def between(t: Table, holds: bool, way: int) -> Scene:
     """A fork between a cup and a plate, its length across the line from one to the other."""
     cup, plate, along = t.cup(), t.plate(), t.any_yaw()
-    fork = {"box": [round(t.u(0.016, 0.026), 3), round(t.u(0.12, 0.2), 3), round(t.u(0.018, 0.03), 3)]}
+    fork: Shape = {"box": [round(t.u(0.016, 0.026), 3), round(t.u(0.12, 0.2), 3), round(t.u(0.018, 0.03), 3)]}
     gap, half, slack = t.u(0.06, 0.14), wide(fork), t.u(-0.012, 0.012)
     share, aside, turn = t.u(0.4, 0.6), t.u(-0.015, 0.015), t.u(-0.12, 0.12) + math.pi * t.rng.randrange(2)
     if not holds and way == 3:  # along the line
@@ -132,7 +137,7 @@ def stack(t: Table, holds: bool, way: int) -> Scene:
     """A body on the top of another one, its middle well over it."""
     below = t.box(0.06, 0.16, (0.03, 0.1))
     above = t.box(0.04, 0.09, (0.03, 0.1)) if t.u(0, 1) < 0.6 else t.can((0.025, 0.04), (0.05, 0.12))
-    half = [side / 2 for side in below["box"]][:2]  # type: ignore[attr-defined]
+    half = [side / 2 for side in below["box"]][:2]
     turn, up = t.any_yaw(), tall(below) + AIR
     x, y = (t.u(-0.35, 0.35) * side for side in half)
     if not holds:  # beside it, far, over its edge, hanging above
@@ -149,7 +154,7 @@ def stack(t: Table, holds: bool, way: int) -> Scene:
 def pack(t: Table, holds: bool, way: int) -> Scene:
     """A body on the floor of an open box that may be moved itself."""
     size = [round(t.u(0.22, 0.45), 3), round(t.u(0.2, 0.35), 3), round(t.u(0.07, 0.14), 3)]
-    crate = {"furniture": "open_box", "size": size, "fixed": False}
+    crate: Shape = {"furniture": "open_box", "size": size, "fixed": False}
     good = t.box(0.04, 0.08, (0.04, 0.11)) if t.u(0, 1) < 0.5 else t.can((0.025, 0.04), (0.05, 0.11))
     half, turn, up = [side / 2 - 0.01 for side in size[:2]], t.any_yaw(), 0.01 + AIR
     room = [max(0.0, side - 1.45 * wide(good)) for side in half]
