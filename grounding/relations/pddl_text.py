@@ -97,7 +97,7 @@ def _renamed(text: str, base: str, name: str) -> str:
     word = word if word[:1].isalpha() else f"domain-{word}"
     for kind in ("domain", "stream"):
         text = text.replace(f"({kind} {base})", f"({kind} {word})")
-    return text
+    return text.replace(f"values of {base}.pddl", f"values of {name}.pddl")
 
 
 def _inside(text: str, start: str, lines: Sequence[str], file: Path) -> str:

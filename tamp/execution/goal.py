@@ -11,7 +11,8 @@ from tamp.execution.expected import RELATIONS, Expected
 from tamp.execution.observation import Truth
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
-from tamp.geometric.samplers.choice import ANY_RELATION, Registry
+from tamp.geometric.samplers.choice import Registry
+from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.classifier import Unanswered, probability
 from tamp.geometric.scene.pose import pose_difference
@@ -82,8 +83,8 @@ def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
     """
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
-        if relation == ANY_RELATION:
-            continue
+        if relation not in SAMPLERS:
+            continue  # a relation of the user's own has the classifier that the plan names
         for name, make in makers.items():
             classifier = _made(make)
             if classifier is not None:

@@ -84,7 +84,7 @@ def parse_choice(
         remedy = (
             f"Of one's own: {relation}=FILE{next(iter(registry[ANY_RELATION]))}"
             if registry.get(ANY_RELATION)
-            else ""
+            else "Learned ones are known with registry=grounding.registry.GROUNDINGS"
         )
         raise InputError(
             f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
