@@ -13,7 +13,7 @@ from grounding.generate import Job, generate
 from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
 from grounding.paper.blind import BlindModel, blind_ceiling
 from grounding.paper.features import BoxFeatures, CloudFeatures, completed, poses_of
-from grounding.paper.oracle import own_box, published_oracle
+from grounding.paper.oracle import in_place, own_box, published_oracle
 from grounding.paper.rotations import quaternions, rotations
 from grounding.relation_scene import Placed, RelationScene
 from tamp.errors import InputError
@@ -44,6 +44,19 @@ def test_bodies_stand_upright_on_the_papers_supports(data: Dataset) -> None:
     assert np.mean(upright) >= (0.8 if data.relation == "on" else 0.4)
     names = {"table", "chest"} if data.relation == "on" else {"square_box", "long_box"}
     assert set(data.card["supports"]) == names
+
+
+def test_inside_is_labelled_by_the_published_test_and_half_turned_by_nothing(data: Dataset) -> None:
+    if data.relation == "on":
+        return
+    unturned: list[bool] = []
+    for example in data:
+        pose = example.situation.body.matrix
+        if example.kind != "colliding":
+            assert in_place(example.situation, pose[None])[0] == example.holds, example.kind
+        if example.holds:
+            unturned.append(bool(np.abs(pose[:3, :3] - np.eye(3)).max() < 0.05))
+    assert 0.25 <= np.mean(unturned) <= 0.75
 
 
 def test_half_of_the_scenes_have_nothing_else_on_the_support(data: Dataset) -> None:
