@@ -42,6 +42,7 @@ class Evaluation:
         published_scaled: The same at the tolerance to which it comes for clouds.
         blind_mca, blind_published: The blind ceilings of `mca` and `published`: what an ideal
             generator that does not see the surroundings reaches on these scenes.
+        blind_corner: By the published oracle, of one that goes to the corners.
     """
 
     scenes: int
@@ -57,6 +58,7 @@ class Evaluation:
     published_scaled: float
     blind_mca: float
     blind_published: float
+    blind_corner: float
 
 
 def evaluate(
@@ -127,6 +129,7 @@ def evaluate(
         float(published[1]) / papers.total(),
         ceiling.mca,
         ceiling.published,
+        ceiling.corner,
     )
 
 
