@@ -24,14 +24,16 @@ from benchmarks.groundings.journal import Journal
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
 from grounding.paper.runtime import PaperModel, choosing
+from grounding.registry import SHIPPED
+from grounding.train import encoder_of
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 
 SCHEMES = ("discriminator", "both", "classifier")
 """What teaches a generator: equation 3 of the paper, the sum of both, equation 4."""
 
-PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-bb": 0.77}, "inside": {"gnn-bb": 0.64}}
-"""MCA of the best variant of each relation (the paper, section V); "the others similar"."""
+PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-pc": 0.77}, "inside": {"mlp-pc": 0.64}}
+"""MCA of the best network for each relation (the paper, section V, Q2); "the others similar"."""
 
 
 CLASSIFIERS = ("residual-turn", "attention")
@@ -119,7 +121,8 @@ class Options:
         scenes: Test scenes at most.
         draws: Poses a scene.
         data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz.
-        weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it.
+        weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it, or else that of the
+            RELATION_mlp-pc that ships.
         out: The results.
         ray: Train on a Ray cluster: its address, auto, or local; one variant a core.
     """
@@ -205,7 +208,8 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
 def _encoder(options: Options, variant: Variant) -> Weights | None:
     if not variant.model.endswith("pc"):
         return None
-    return read_weights(options.weights / f"{options.relation}_encoder.safetensors")
+    path = options.weights / f"{options.relation}_encoder.safetensors"
+    return encoder_of(path if path.is_file() else SHIPPED / f"{options.relation}_mlp-pc.safetensors")
 
 
 def _train_on_ray(options: Options, wanted: Sequence[Variant], journal: Journal, data: Dataset, test: Dataset) -> None:

@@ -264,6 +264,7 @@ def _evaluate(chosen: Evaluate, show: Report) -> None:
     print(f"          {found.published_scaled:.4f}  at 6.3 cm, which it comes to for clouds")
     print(f"ceiling   {found.blind_mca:.4f}  MCA of an ideal generator that sees no surroundings")
     print(f"          {found.blind_published:.4f}  by the published oracle")
+    print(f"          {found.blind_corner:.4f}  the same of one that goes to the corners")
     print(f"accuracy  {'-' if found.accuracy is None else f'{found.accuracy:.4f}'}")
     print(f"one pose  {found.milliseconds:.2f} ms")
     print(json.dumps(asdict(found)))

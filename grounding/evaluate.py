@@ -7,12 +7,12 @@ from __future__ import annotations
 import math
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from grounding.dataset import Dataset
+from grounding.dataset import Dataset, Example
 from grounding.model import Model
 from grounding.oracles import NEAR, ItemOf, Verdict, paper_verdicts, settled
 from grounding.paper.blind import blind_ceiling
@@ -42,6 +42,7 @@ class Evaluation:
         published_scaled: The same at the tolerance to which it comes for clouds.
         blind_mca, blind_published: The blind ceilings of `mca` and `published`: what an ideal
             generator that does not see the surroundings reaches on these scenes.
+        blind_corner: By the published oracle, of one that goes to the corners.
     """
 
     scenes: int
@@ -57,6 +58,7 @@ class Evaluation:
     published_scaled: float
     blind_mca: float
     blind_published: float
+    blind_corner: float
 
 
 def evaluate(
@@ -83,12 +85,14 @@ def evaluate(
     verdicts: Counter[str] = Counter()
     papers: Counter[str] = Counter()
     feasible, times = 0, []
+    right: list[bool | None] = []
     published = np.zeros(2)
     items = ItemOf()
 
     with open_drops() as drops:
         for done, index in enumerate(order):
-            situation = data[int(index)].situation
+            example = data[int(index)]
+            situation = example.situation
             started = time.perf_counter()
             poses = model.propose(situation, 1, rng)
             times.append(time.perf_counter() - started)
@@ -102,6 +106,7 @@ def evaluate(
                     published_oracle(situation, drawn, near).sum() for near in (NEAR, CLOUD_NEAR_M)
                 ]
 
+            right.append(_right(model, example))
             possible = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
             feasible += possible or verdict is Verdict.HOLDS
             if done % 50 == 49:
@@ -115,7 +120,7 @@ def evaluate(
         papers[Verdict.HOLDS] / papers.total(),
         verdicts[Verdict.HOLDS] / count,
         feasible / count,
-        accuracy(model, data, scenes, seed),
+        _share(right),
         _failures(verdicts),
         _failures(papers),
         1e3 * float(np.median(times)),
@@ -124,6 +129,7 @@ def evaluate(
         float(published[1]) / papers.total(),
         ceiling.mca,
         ceiling.published,
+        ceiling.corner,
     )
 
 
@@ -138,14 +144,22 @@ def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int =
         seed: Of their order.
     """
     order = np.random.default_rng(seed).permutation(len(data))[: scenes or len(data)]
-    right = 0
+    right: list[bool | None] = []
     for index in order:
-        example = data[int(index)]
-        own = float(model.classify(example.situation, example.situation.body.matrix[None])[0])
-        if math.isnan(own):
+        right.append(_right(model, data[int(index)]))
+        if right[-1] is None:
             return None
-        right += (own > 0.5) == example.holds
-    return right / len(order)
+    return _share(right)
+
+
+def _right(model: Model, example: Example) -> bool | None:
+    """Check whether the classifier is right about an example; None when there is no classifier."""
+    own = float(model.classify(example.situation, example.situation.body.matrix[None])[0])
+    return None if math.isnan(own) else (own > 0.5) == example.holds
+
+
+def _share(right: Sequence[bool | None]) -> float | None:
+    return None if None in right else sum(map(bool, right)) / len(right)
 
 
 def _failures(verdicts: Counter[str]) -> dict[str, float]:

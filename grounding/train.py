@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -205,7 +206,7 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
         args.scheme or HEADLINE_SCHEME.get(data.relation, "both"),
         sizes=[args.samples or len(data)],
         seeds=[args.seed],
-        encoder=_encoder(args),
+        encoder=None if args.encoder is None else encoder_of(args.encoder),
         state=args.state,
         progress=progress,
         iterations=args.iterations or ITERATIONS,
@@ -223,7 +224,7 @@ def train_tree(data: Dataset, args: TrainArgs, progress: Say, *, model: str) -> 
         model,
         samples=args.samples or len(data),
         seed=args.seed,
-        encoder=_encoder(args),
+        encoder=None if args.encoder is None else encoder_of(args.encoder),
         progress=progress,
     )
     return _signed(_checked(weights, data, args), args)
@@ -248,11 +249,13 @@ def _checked(weights: Weights, data: Dataset, args: TrainArgs) -> Weights:
     )
 
 
-def _encoder(args: TrainArgs) -> Weights | None:
-    """Read the encoder of clouds: a file of its own, or what is inside a model on clouds."""
-    if args.encoder is None:
-        return None
-    weights = read_weights(args.encoder)
+def encoder_of(path: Path) -> Weights:
+    """Read an encoder of clouds: a file of its own, or what is inside a model on clouds.
+
+    Raises:
+        InputError: There is none in it.
+    """
+    weights = read_weights(path)
     inside = {
         name.removeprefix("encoder."): array
         for name, array in weights.arrays.items()
@@ -263,7 +266,7 @@ def _encoder(args: TrainArgs) -> Weights | None:
     if (weights.card.get("model"), weights.card.get("kind")) != ("encoder", "conv"):
         raise InputError(
             "no encoder of kind 'conv'",
-            file=args.encoder,
+            file=path,
             remedy="Train one: tamp-learn encoder --help",
         )
     return weights

@@ -12,6 +12,7 @@ from numpy.random import Generator as Random
 from grounding.demonstrations import POSITIVE, sticking_out
 from grounding.mesh_folder import MeshFolder
 from grounding.oracles import Verdict, settled
+from grounding.paper.oracle import in_place
 from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M, PaperScenes
 from grounding.random_poses import random_rest, random_turn
 from grounding.relation_scene import Placed
@@ -69,6 +70,10 @@ class PaperDemonstrations:
 
         verdicts = settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)
         if (verdicts[0] is Verdict.HOLDS) != positive:
+            return None
+        # the published code labels `inside` by the test that it judges by, contacts left out
+        labelled_so = self._relation == "inside" and kind != "colliding"
+        if labelled_so and in_place(scene.situation(pose), pose[None])[0] != positive:
             return None
 
         feasible = positive or self._split == "train" or self._feasible(scene, rng)

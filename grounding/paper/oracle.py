@@ -35,24 +35,32 @@ def published_oracle(
     of the surroundings apart. `inside`: the eight corners of the own box in the container's box,
     true hulls at most DEPTH in each other.
     """
+    if situation.region.hollow:
+        form, others, depth = situation.body.form, situation.others, DEPTH
+    else:
+        form = own_box(situation.body.form)
+        others = tuple(Placed(own_box(other.form), other.matrix) for other in situation.others)
+        depth = 0.0
+
+    apart = (separations(form, poses, Obstacles(others)) >= -depth).all(axis=1)
+    return in_place(situation, poses, near) & apart
+
+
+def in_place(situation: RelationScene, poses: Array, near: float = NEAR) -> NDArray[np.bool_]:
+    """Judge poses T_world_body, shape (n, 4, 4), as `published_oracle` does without the
+    surroundings: by where the body's own box is; returns shape (n,).
+    """
     region = situation.region
     low, high = situation.body.form.corners
     corners = np.array([*product(*zip(low, high, strict=True))])
     frame = situation.support.matrix if region.hollow else situation.T_world_region
     inner = np.linalg.inv(frame) @ poses
     points = corners @ inner[:, :3, :3].transpose(0, 2, 1) + inner[:, None, :3, 3]
-
     if region.hollow:
-        within = ((points > region.box[0]) & (points < region.box[1])).all(axis=(1, 2))
-        form, others, depth = situation.body.form, situation.others, DEPTH
-    else:
-        lowest, centre = points[:, :, 2].min(axis=1), points[:, :, :2].mean(axis=1)
-        within = (np.abs(lowest) < near) & (np.abs(centre) <= region.size[:2] / 2).all(axis=1)
-        form = own_box(situation.body.form)
-        others = tuple(Placed(own_box(other.form), other.matrix) for other in situation.others)
-        depth = 0.0
+        return ((points > region.box[0]) & (points < region.box[1])).all(axis=(1, 2))
 
-    return within & (separations(form, poses, Obstacles(others)) >= -depth).all(axis=1)
+    lowest, centre = points[:, :, 2].min(axis=1), points[:, :, :2].mean(axis=1)
+    return (np.abs(lowest) < near) & (np.abs(centre) <= region.size[:2] / 2).all(axis=1)
 
 
 def own_box(form: BodyGeometry) -> BodyGeometry:

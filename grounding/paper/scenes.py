@@ -149,9 +149,11 @@ class PaperScenes:
 
     def resting(self, scene: SampledScene, rng: Random) -> Array:
         """Sample world poses at rest in the region, shape (n, 4, 4), n <= TRIES: `on` upright,
-        `inside` upright or on any face.
+        `inside` turned by nothing or on any face.
         """
-        found = [self._rest(scene.body, scene.support, rng) for _ in range(TRIES)]
+        found = [
+            self._rest(scene.body, scene.support, scene.T_world_region, rng) for _ in range(TRIES)
+        ]
         poses = [scene.T_world_region @ pose for pose in found if pose is not None]
         return np.stack(poses) if poses else np.zeros((0, 4, 4))
 
@@ -160,8 +162,9 @@ class PaperScenes:
         name, scale, item = scene.others[0]
         support = self._supports[name]
         region = scaled_region(support.region, scale)
-        pose = self._rest(scene.body, replace(support, region=region), rng)
-        return None if pose is None else item.matrix @ region.matrix @ pose
+        T_world_region = item.matrix @ region.matrix
+        pose = self._rest(scene.body, replace(support, region=region), T_world_region, rng)
+        return None if pose is None else T_world_region @ pose
 
     def _furniture(
         self, rng: Random
@@ -199,7 +202,7 @@ class PaperScenes:
         solid = Obstacles([*obstacles[1:], *solids(stand)])
         for _ in range(6):
             if there:
-                local = self._rest(form, support, rng)
+                local = self._rest(form, support, T_world_region, rng)
                 pose = None if local is None else T_world_region @ local
             else:
                 area = (2 * FLOOR_AREA_M, 2 * FLOOR_AREA_M, math.inf)
@@ -208,15 +211,19 @@ class PaperScenes:
                 return name, scale, Placed(form, pose)
         return None
 
-    def _rest(self, form: BodyGeometry, support: Support, rng: Random) -> Array | None:
-        """Sample T_region_body: as it stands in its own frame with any yaw, or, in a container half
-        of the time, on any stable face.
+    def _rest(
+        self, form: BodyGeometry, support: Support, T_world_region: Array, rng: Random
+    ) -> Array | None:
+        """Sample T_region_body: as it stands in its own frame with any yaw; in a container half of
+        the time along the world's axes, as the published sampler has it, else on any stable face.
         """
         region = support.region
         if region.hollow and rng.random() < 0.5:
             return random_rest(form, region.size, False, rng)
 
         yaw = rng.uniform(-math.pi, math.pi)
+        if region.hollow:
+            yaw = -math.atan2(T_world_region[1, 0], T_world_region[0, 0])
         c, s = math.cos(yaw), math.sin(yaw)
         points = form.vertices @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
         low, high = points.min(axis=0), points.max(axis=0)

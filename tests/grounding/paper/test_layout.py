@@ -11,9 +11,9 @@ from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate
 from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
-from grounding.paper.blind import BlindModel, blind_ceiling
+from grounding.paper.blind import BlindModel, CornerModel, blind_ceiling
 from grounding.paper.features import BoxFeatures, CloudFeatures, completed, poses_of
-from grounding.paper.oracle import own_box, published_oracle
+from grounding.paper.oracle import in_place, own_box, published_oracle
 from grounding.paper.rotations import quaternions, rotations
 from grounding.relation_scene import Placed, RelationScene
 from tamp.errors import InputError
@@ -44,6 +44,19 @@ def test_bodies_stand_upright_on_the_papers_supports(data: Dataset) -> None:
     assert np.mean(upright) >= (0.8 if data.relation == "on" else 0.4)
     names = {"table", "chest"} if data.relation == "on" else {"square_box", "long_box"}
     assert set(data.card["supports"]) == names
+
+
+def test_inside_is_labelled_by_the_published_test_and_half_turned_by_nothing(data: Dataset) -> None:
+    if data.relation == "on":
+        return
+    unturned: list[bool] = []
+    for example in data:
+        pose = example.situation.body.matrix
+        if example.kind != "colliding":
+            assert in_place(example.situation, pose[None])[0] == example.holds, example.kind
+        if example.holds:
+            unturned.append(bool(np.abs(pose[:3, :3] - np.eye(3)).max() < 0.05))
+    assert 0.25 <= np.mean(unturned) <= 0.75
 
 
 def test_half_of_the_scenes_have_nothing_else_on_the_support(data: Dataset) -> None:
@@ -95,6 +108,24 @@ def test_an_ideal_generator_fails_by_the_surroundings_alone(data: Dataset) -> No
     assert np.isnan(model.classify(data[0].situation, poses)).all()
     ceiling = blind_ceiling(data, range(len(data)), 4, 0)
     assert 0.4 < ceiling.published <= ceiling.mca < 1.0
+    assert ceiling.corner > ceiling.published
+
+
+def test_who_goes_to_a_corner_fails_by_what_is_there_or_does_not_fit(data: Dataset) -> None:
+    rng = np.random.default_rng(0)
+    for example in data:
+        situation = replace(example.situation, others=())
+        region, form = situation.region, situation.body.form
+        poses = CornerModel().propose(situation, 8, rng)
+        inner = np.linalg.inv(situation.T_world_region) @ poses
+        low, high = form.corners
+        middles = inner[:, :2, 3] + (inner[:, :3, :3] @ (low + high) / 2)[:, :2]
+        assert len(np.unique(np.sign(middles), axis=0)) > 1  # more than one of the corners
+        edges, box = np.sort(high - low), np.sort(np.ptp(region.box[:, :2], axis=0))
+        height = region.box[1, 2] - region.matrix[2, 3]
+        room = min(height - edges[0], *(box - edges[1:])) if region.hollow else np.inf
+        if abs(room) > 0.01:
+            assert published_oracle(situation, poses).all() == (room > 0)
 
 
 @pytest.mark.parametrize("features", [BoxFeatures(), BoxFeatures(residual=True)])
