@@ -210,3 +210,10 @@ def _furniture() -> Iterator[Measure]:
     yield _mm(
         "furniture: any edge", 0.012, 0.8, "absolute", "from the nearest edge of the furniture"
     )
+    yield _mm("furniture: end", 0.012, 0.9, "absolute", "from the nearer end of the furniture")
+    words = "from the nearer long edge of the furniture"
+    yield _mm("furniture: long edge", 0.012, 0.9, "absolute", words)
+    words = "from both edges of the nearest corner of the furniture, at most"
+    yield _mm("furniture: corner", 0.012, 0.8, "absolute", words)
+    words = "distance from the furniture's middle"
+    yield _mm("furniture: middle", 0.015, 0.8, "absolute", words, least=True)

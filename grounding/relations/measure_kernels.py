@@ -215,7 +215,8 @@ def _line(p, out, c):
 
 @njit(cache=True)
 def _furniture(corners, counts, shape, R, p, support, out, c):
-    nearest = np.inf
+    away = 0.0
+    gaps = np.empty(2)
     for axis in range(2):
         angle = support[1] + axis * 0.5 * math.pi
         x, y = math.cos(angle), math.sin(angle)
@@ -225,11 +226,13 @@ def _furniture(corners, counts, shape, R, p, support, out, c):
         middle = 0.5 * (a + b) - origin
         out[c], out[c + 1] = middle, abs(middle) - side
         out[c + 2], out[c + 3] = a - origin + side, origin + side - b
-        nearest = min(nearest, a - origin + side, origin + side - b)
+        gaps[axis] = min(a - origin + side, origin + side - b)
+        away += middle * middle
         out[c + 4] = p[0, axis]
         c += 5
-    out[c] = nearest
-    return c + 1
+    out[c], out[c + 1], out[c + 2] = min(gaps[0], gaps[1]), gaps[0], gaps[1]
+    out[c + 3], out[c + 4] = max(gaps[0], gaps[1]), math.sqrt(away)
+    return c + 5
 
 
 @njit(cache=True)
