@@ -193,6 +193,10 @@ def _line() -> Iterator[Measure]:
         "line: angle", 0.12, 0.3, "place", "angle between {1} and {2} seen from it", least=True
     )
     yield _mm("line: beyond 2", 0.015, 0.2, "place", "beyond {2} along the line from {1}")
+    yield _mm("nearer: 1", 0.015, 0.8, "place", "farther from {1} than from {2}")
+    for near, far in ((1, 2), (2, 1)):
+        words = f"farther from {{{near}}} than {{{far}}} is"
+        yield _mm(f"farther: {near}", 0.015, 1.0, "place", words)
 
 
 def _furniture() -> Iterator[Measure]:

@@ -210,7 +210,9 @@ def _line(p, out, c):
     out[c + 4] = (abs(share - 0.5) - 0.5) * length
     out[c + 5] = abs(wrap(bearing(p, 0, 1) - bearing(p, 0, 2)))
     out[c + 6] = (share - 1.0) * length
-    return c + 7
+    first, second = math.hypot(u, v), math.hypot(p[0, 0] - p[2, 0], p[0, 1] - p[2, 1])
+    out[c + 7], out[c + 8], out[c + 9] = first - second, first - length, second - length
+    return c + 10
 
 
 @njit(cache=True)
