@@ -42,6 +42,10 @@ OTHERWISE = 0.3
 wanted.
 """
 
+FREE = 0.005
+"""Metres by which a demonstration that was carried over may be in another argument, for its chart
+to have the credit."""
+
 GOOD = -1.0
 """A score from which on a place is worth trying though others are better."""
 
@@ -209,7 +213,9 @@ def _liked(
         every.outside[chart, rows], every.yaw[chart, rows], every.R[rows],
         rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)), onto(s, level),
     )  # fmt: skip
-    return float(committee.predict(s).mean())
+    bad, anywhere = np.empty(n), np.full(n, np.inf)  # chance puts the others near edges, too
+    trouble(s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support, anywhere, ANY_WAY, bad)
+    return float((committee.predict(s) * (bad < FREE)).mean())
 
 
 def _standing(down: Array, rng: Random) -> Array:
