@@ -59,8 +59,8 @@ class Own:
         PDDL's names.
         """
         at = {row[0]: row[1] for row in expected.state.all("at-pose") if len(row) == 2}
-        standing = {name.lower() for name in truth.scene.movable if name != held}
-        there = {body: pose for body, pose in at.items() if body in standing}
+        placed = {name.lower() for name in truth.scene.movable if name != held}
+        there = {body: pose for body, pose in at.items() if body in placed}
         seen = self.observe(truth, held, expected, there)
         return frozenset(
             (name, *words)
@@ -100,7 +100,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
     asked: dict[str, tuple[Relation, str, Classifier]] = {}
     trusted: list[str] = []
     bare = replace(domain, actions=())
-    rests = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
+    asked_by_rules = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
 
     for name in _own_names(stored, streams, classifiers):
         relation = relation_of(streams, domain, name)
@@ -108,7 +108,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
             continue
         if name in classifiers:
             asked[name] = (relation, *classifiers[name])
-        elif relation.predicates & rests:
+        elif relation.predicates & asked_by_rules:
             atom = needed_false(bare, goal, relation.predicates)
             if atom is not None:
                 raise _unknown(

@@ -20,7 +20,7 @@ WIDTH = 110
 MOST = 8
 """Lines about what failed."""
 
-STANDING = ("supported", "contained")
+SUPPORT_PREDICATES = ("supported", "contained")
 """Predicates that say where a body is; one of the user's may speak of a place where it is not."""
 
 PARTS = {
@@ -146,7 +146,7 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     }
     places: dict[tuple[str, str], str] = {}
     facts = (*sorted(problem.stream_task.task.initial), *solution.certified)
-    for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
+    for fact in sorted(facts, key=lambda fact: fact[0] not in SUPPORT_PREDICATES):
         if len(fact) == 4 and fact[3] in scene_names and fact[3] not in solution.values:
             name = scene_names[fact[3]]
             places.setdefault(
@@ -187,8 +187,8 @@ def _effort(solution: Solution, loading: float) -> list[str]:
         if part is not None:
             parts[part] = parts.get(part, 0.0) + seconds
 
-    rest = "improving" if solution.improvements else "other"
-    times = [f"{part} {share} %" for part, share in time_shares(parts, total, rest)]
+    unnamed = "improving" if solution.improvements else "other"
+    times = [f"{part} {share} %" for part, share in time_shares(parts, total, unnamed)]
     passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
 
     effort = solution.effort
@@ -215,17 +215,19 @@ def _effort(solution: Solution, loading: float) -> list[str]:
     ]
 
 
-def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
-    """Round shares of time to percents of sum 100, largest first; `rest` is what no part claims."""
+def time_shares(parts: dict[str, float], total: float, unnamed: str) -> list[tuple[str, int]]:
+    """Round shares of time to percents of sum 100, largest first; `unnamed` is what no part
+    claims.
+    """
     told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
-    told[rest] = max(0.0, total - sum(told.values()))
+    told[unnamed] = max(0.0, total - sum(told.values()))
     whole = max(total, sum(told.values()))
     exact = {part: 100.0 * seconds / whole for part, seconds in told.items()}
     shares = {part: math.floor(share) for part, share in exact.items()}
     nearest = sorted(exact, key=lambda part: shares[part] - exact[part])
     for part in nearest[: 100 - sum(shares.values())]:
         shares[part] += 1
-    order = sorted(shares, key=lambda part: (part == rest, -exact[part]))
+    order = sorted(shares, key=lambda part: (part == unnamed, -exact[part]))
     return [(part, shares[part]) for part in order if shares[part] > 0]
 
 
