@@ -18,7 +18,13 @@ from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
 from tamp.relations.observed import Observation, moved, observe
 from tamp.symbolic.pddl.complement import atoms_of_conditions
-from tamp.symbolic.pddl.relations import Relation, needed_false, relation_names, relation_of
+from tamp.symbolic.pddl.relations import (
+    SAMPLE,
+    Relation,
+    needed_false,
+    relation_names,
+    relation_of,
+)
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.verification.trust import read_streams, streams_file
 
@@ -164,7 +170,7 @@ def named_classifiers(
 
 def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Iterable[str]:
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
-    sampled = [stream.name.removeprefix("sample-") for stream in streams.streams if stream.outputs]
+    sampled = [stream.name.removeprefix(SAMPLE) for stream in streams.streams if stream.outputs]
     named = {*planned, *classifiers, *sampled}
     return [
         name

@@ -11,6 +11,7 @@ from tamp.planner.problem import Problem
 from tamp.planner.relation_words import relation_words
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
+from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.pddl.structs import And
 
@@ -22,15 +23,6 @@ MOST = 8
 
 SUPPORT_PREDICATES = ("supported", "contained")
 """Predicates that say where a body is; one of the user's may speak of a place where it is not."""
-
-PARTS = {
-    "motion": ("plan-",),
-    "ik": ("inverse-kinematics", "inverse-kinematics-here"),
-    "grasps": ("sample-grasp",),
-    "placements": ("sample-",),
-    "tests": ("test-",),
-}
-"""Parts of the time in the summary, by the beginning of the streams' names; the first that fits."""
 
 
 APART = ("search", "timing", "explaining", "other tries")
@@ -181,10 +173,11 @@ def _base(segment: Segment, index: int) -> str:
 
 def _effort(solution: Solution, loading: float) -> list[str]:
     total = max(solution.seconds.get("total", 0.0), 1e-9)
+    kinds = {one.name: one.kind for one in solution.problem.stream_task.streams}
     parts: dict[str, float] = {}
     for name, seconds in solution.seconds.items():
-        part = name if name in APART else _part(name)
-        if part is not None:
+        part = name if name in APART else kinds.get(name, StreamKind.OTHER).value
+        if name != "total":
             parts[part] = parts.get(part, 0.0) + seconds
 
     unnamed = "improving" if solution.improvements else "other"
@@ -247,13 +240,6 @@ def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
         break_on_hyphens=False,
     )
     return [line.replace("\u00a0", " ").removesuffix(" ·") for line in lines]
-
-
-def _part(stream: str) -> str | None:
-    for part, beginnings in PARTS.items():
-        if stream.startswith(beginnings):
-            return part
-    return None if stream == "total" else "other streams"
 
 
 def _count(number: int, one: str, many: str | None = None) -> str:
