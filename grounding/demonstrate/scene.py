@@ -39,7 +39,7 @@ OTHER = ([0.80, 0.80, 0.78], [0.72, 0.75, 0.78], [0.78, 0.74, 0.70])
 OTHERS = 2
 """Other bodies in a generated scene, at most."""
 
-STANDING = 0.6
+UPRIGHT_SHARE = 0.6
 """Share of bodies that stand at first as they are modelled; the rest on any of their faces."""
 
 TRIES = 60
@@ -153,12 +153,12 @@ def open_stage(file: str | Path, relation: Relation, chosen: Mapping[str, str]) 
         if wanted is not None and wanted not in choices:
             what = f"'{wanted}' cannot be the argument {argument.name}"
             raise InputError(what, file=file, found=wanted, choices=choices)
-        rest = [name for name in (free if choices[0] in scene.movable else choices)]
-        rest = [name for name in rest if name not in arguments]
-        if wanted is None and not rest:
+        remaining = [name for name in (free if choices[0] in scene.movable else choices)]
+        remaining = [name for name in remaining if name not in arguments]
+        if wanted is None and not remaining:
             what = f"too few bodies or places for {relation}"
             raise InputError(what, file=file, remedy="Leave the scene out: one is generated")
-        arguments.append(wanted or rest[0])
+        arguments.append(wanted or remaining[0])
 
     return Stage(entries, scene, tuple(arguments))
 
@@ -276,7 +276,7 @@ def _free_pose(
     faces = stable_faces_of(replace(body, pose=Pose(), support=None)).faces if body.movable else ()
     for _ in range(TRIES):
         rotation = np.eye(3)
-        if faces and rng.random() > STANDING:
+        if faces and rng.random() > UPRIGHT_SHARE:
             rotation = faces[int(rng.integers(len(faces)))].rotation
         turn = Pose.from_xyz_yaw(0.0, 0.0, 0.0, float(rng.uniform(-math.pi, math.pi)))
         local = np.eye(4)

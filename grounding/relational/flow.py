@@ -66,7 +66,7 @@ class Flow:
         for step in range(STEPS):
             time = np.full((count, 1), step / STEPS, np.float32)
             x += self.velocity(x, time, chosen, around, half) / STEPS
-        return self.chart.decode(view, face, settled_coordinates(x.astype(float) * self._scale))
+        return self.chart.decode(view, face, levelled(x.astype(float) * self._scale))
 
     def velocity(
         self,
@@ -92,7 +92,7 @@ class Flow:
         return dense(self._velocity, np.concatenate([x, time, conditions, pooled], axis=1))
 
 
-def settled_coordinates(coordinates: Array) -> Array:
+def levelled(coordinates: Array) -> Array:
     """Round heights and tilts that are within what physics leaves to none, as demonstrations have
     them.
     """

@@ -133,7 +133,7 @@ class Generator:
         rotation = self.shown.R[one].copy()
         if self.steady and len(steady):
             turned = np.flatnonzero(rng.random(n) < OTHERWISE)
-            rotation[turned] = _standing(steady[rng.integers(0, len(steady), len(turned))], rng)
+            rotation[turned] = _turned_down(steady[rng.integers(0, len(steady), len(turned))], rng)
         carry(
             s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support,
             self.shown.codes[chart], place, outside, self.shown.yaw[chart, one],
@@ -218,7 +218,7 @@ def _liked(
     return float((committee.predict(s) * (bad < FREE)).mean())
 
 
-def _standing(down: Array, rng: Random) -> Array:
+def _turned_down(down: Array, rng: Random) -> Array:
     """Return rotations that turn vectors of a body's frame (n, 3) down, at any yaw, (n, 3, 3)."""
     side = np.where(np.abs(down[:, :1]) < 0.9, np.eye(3)[0], np.eye(3)[1])
     x = np.cross(down, side)

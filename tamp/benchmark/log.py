@@ -113,9 +113,9 @@ class Log:
         plain = _plain(dict(line))
         size = os.fstat(self._stream.fileno()).st_size
         try:
-            rest = json.dumps(plain, allow_nan=False).encode() + b"\n"
-            while rest:
-                rest = rest[self._stream.write(rest) :]
+            remaining = json.dumps(plain, allow_nan=False).encode() + b"\n"
+            while remaining:
+                remaining = remaining[self._stream.write(remaining) :]
             os.fsync(self._stream.fileno())
         except OSError as error:
             with contextlib.suppress(OSError):  # no half a line

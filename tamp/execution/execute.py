@@ -31,7 +31,7 @@ from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tamp.verification.limits import check_ranges
 
-SETTLE = 0.5
+WAIT_AFTER_ACTION_S = 0.5
 """Seconds after an action, before it is looked at what came of it."""
 
 STILL = (0.005, 0.05)
@@ -108,7 +108,7 @@ class _Run:
 
     def all(self) -> None:
         """Execute every action of the plan, and of those that take its place."""
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         while self._queue and not self._explanation:
             action = self._queue.pop(0)
             done = self._carry_out(action)
@@ -118,7 +118,7 @@ class _Run:
 
     def result(self) -> Execution:
         """Return the execution's outcome."""
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         truth = self._look()
         held, classifiers = self._held(), self._chosen.classifiers
         goal = judged(self._goal, self._expected, truth, held, classifiers, self._own)
@@ -161,7 +161,7 @@ class _Run:
                 break
 
         self._player.finish()
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         self._come_to_rest()
         self._expected.apply(action)
 

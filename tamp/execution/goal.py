@@ -55,8 +55,8 @@ def judged(
     }
 
     there = dict(_in_place(expected, truth, held))
-    standing = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
-    at = {body: f"{body} seen" for body in standing} | there
+    placed = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
+    at = {body: f"{body} seen" for body in placed} | there
     facts |= {("at-pose", body, pose) for body, pose in at.items()}
     for seen in own.observe(truth, held, expected, at).values():
         facts = (facts - seen.fails) | seen.holds

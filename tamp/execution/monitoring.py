@@ -62,7 +62,7 @@ class Watch:
         A body may touch what it touches before or after the action: that is what it rests on. The
         hand may touch what it handles.
         """
-        resting = self._before | frozenset(self.world.touches())
+        borne = self._before | frozenset(self.world.touches())
         robot = self.world.robot_links
         found: list[Touch] = []
         for (first, second), force in sorted(self.touches.items()):
@@ -72,7 +72,7 @@ class Watch:
                     self.world.hand_link,
                 )
             else:
-                fine = (first, second) in resting or first == FLOOR_NAME == second
+                fine = (first, second) in borne or first == FLOOR_NAME == second
             if not fine and force >= FELT:
                 found.append(Touch(first, second, force))
         return tuple(found)

@@ -74,15 +74,15 @@ class Observer:
         """Observe the truth about movable bodies at their T_world_body (4, 4), the base (3,) and
         the body in the hand.
         """
-        standing = [name for name in self._scene.movable if name in poses and name != held]
+        placed = [name for name in self._scene.movable if name in poses and name != held]
         if held is not None:
             self._seen.pop(held, None)
             self._world.place(held, AWAY)
-        self._place(poses, standing)
+        self._place(poses, placed)
         bodies = dict(self._scene.bodies)
         facts: set[Fact] = set()
         reasons: dict[Fact, str] = {}
-        for name in standing:
+        for name in placed:
             stand = self._supports.stand(name)
             support = self._feel(name, stand, facts, reasons)
             pose = Pose.from_matrix(self._world.pose(name))
@@ -94,12 +94,12 @@ class Observer:
         scene = replace(self._scene, bodies=MappingProxyType(bodies), robot=robot)
         return Truth(scene, frozenset(facts), reasons)
 
-    def _place(self, poses: Mapping[str, Array], standing: list[str]) -> None:
+    def _place(self, poses: Mapping[str, Array], placed: list[str]) -> None:
         """Put bodies where they are seen, the planner's air under those that rest: physics presses
         them together.
         """
         moved = []
-        for name in standing:
+        for name in placed:
             T = poses[name]
             before = self._seen.get(name)
             if (

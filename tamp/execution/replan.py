@@ -80,7 +80,7 @@ class Replanner:
         truth: Truth,
         grasp: Grasp | None,
         plan: PlanFile,
-        rest: Sequence[TimedAction],
+        remaining: Sequence[TimedAction],
         found: Sequence[Deviation],
         expected: Expected,
     ) -> Mended:
@@ -90,7 +90,7 @@ class Replanner:
             truth: What is seen.
             grasp: What is in the hand.
             plan: The plan so far.
-            rest: Its actions that are still to come.
+            remaining: Its actions that are still to come.
             found: What is not as expected.
             expected: What is expected now.
         """
@@ -112,7 +112,7 @@ class Replanner:
         except InputError as error:  # the robot touches something where it stands
             return Mended(explanation=(error.message,))
 
-        if self._holds(problem, truth, plan, rest, found, expected):
+        if self._holds(problem, truth, plan, remaining, found, expected):
             return Mended(keeps=True)
 
         seed, self._seed = self._seed, self._seed + 1
@@ -143,7 +143,7 @@ class Replanner:
         problem: Problem,
         truth: Truth,
         plan: PlanFile,
-        rest: Sequence[TimedAction],
+        remaining: Sequence[TimedAction],
         found: Sequence[Deviation],
         expected: Expected,
     ) -> bool:
@@ -160,7 +160,7 @@ class Replanner:
 
         later = {
             segment.attach.body.lower()
-            for action in rest
+            for action in remaining
             for segment in action.segments
             if segment.attach
         }
@@ -178,7 +178,7 @@ class Replanner:
         names = {name.lower(): name for name in truth.scene.bodies}
         should = expected.poses
 
-        for segment in (segment for action in rest for segment in action.segments):
+        for segment in (segment for action in remaining for segment in action.segments):
             if segment.attach is not None:
                 name = names.get(segment.attach.body)
                 if name is None or name not in poses:

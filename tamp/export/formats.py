@@ -50,7 +50,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     arm, fingers = _names(robot)
     joints = (*BASE_JOINTS, *arm, *fingers)
     column = {name: at for at, name in enumerate(joints)}
-    standing = _start(plan, robot)
+    initial = _start(plan, robot)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
@@ -64,8 +64,8 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
                 stretch.times, stretch.positions, stretch.velocities, strict=True
             ):  # fmt: skip
                 rates = np.zeros(len(joints))
-                standing[moving], rates[moving] = positions, velocities
-                numbers = (*_rounded(standing), *_rounded(rates))
+                initial[moving], rates[moving] = positions, velocities
+                numbers = (*_rounded(initial), *_rounded(rates))
                 holding = stretch.holding or ""
                 writer.writerow(
                     (

@@ -68,8 +68,8 @@ class Certified:
             "anchored": ("?", self._anchored),
             "stackable": ("o?o", self._stackable),
             "grasp": ("og", self._grasp),
-            "standing": ("b", self._standing),
-            "base-conf": ("b", self._standing),
+            "standing": ("b", self._base_conf),
+            "base-conf": ("b", self._base_conf),
             "kin": ("opgbq", self._kinematics),
             "base-motion": ("bt", self._base_motion),
             "pick-motion": ("opgbqt", self._kinematics),
@@ -200,7 +200,7 @@ class Certified:
             return f"{terms[1]} is a grasp of {hold.body}"
         return self.why_not_held(self._bodies[terms[0]], hold.T_tool_body, hold.opening)
 
-    def _standing(self, terms: list[str]) -> str | None:
+    def _base_conf(self, terms: list[str]) -> str | None:
         x, y, _ = self._plan.values[terms[0]].data
         room = self._world.scene.room
         inside = (

@@ -50,12 +50,12 @@ class ExpectedContacts:
             letting go of.
         grasped: Bodies that the hand and fingers may be near: one that they are reaching for or
             have let go of.
-        resting: Bodies that the held one may be near: those that it stood on or will stand on.
+        supporting: Bodies that the held one may be near: those that it stood on or will stand on.
     """
 
     touching: frozenset[str] = frozenset()
     grasped: frozenset[str] = frozenset()
-    resting: frozenset[str] = frozenset()
+    supporting: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -181,7 +181,7 @@ class Sweeper:
         by_hand += [False] * (len(movers) - len(by_hand))
         in_hand = np.arange(len(movers)) >= len(self._solids)
         for which, near, mark in (
-            (by_hand, usual.grasped, 0.0), (in_hand, usual.resting, 0.0),
+            (by_hand, usual.grasped, 0.0), (in_hand, usual.supporting, 0.0),
             (by_hand, usual.touching, -1.0),
         ):  # fmt: skip
             marks[np.ix_(np.array(which), np.array([owner in near for owner in owners]))] = mark

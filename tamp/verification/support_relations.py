@@ -154,20 +154,20 @@ class SupportRelations:
             self._log.add("certified", f"({' '.join(fact)}) does not hold: {why}", *bodies)
 
     def _why_no_relation(self, fact: Fact, name: str, stand: SupportContact) -> str | None:
-        relation, rests = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
+        relation, supports = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
         if relation == "grounded":
-            return rests if stand.on & set(self._world.scene.movable) else None
+            return supports if stand.on & set(self._world.scene.movable) else None
         if relation in ("supported", "contained"):
             return self._why_not(relation, name, fact[3], stand)
 
         below = self._bodies.get(fact[3 if relation != "stacked" else 4])
         if relation in ("rests-on", "borne"):
-            return None if below in stand.on else rests
+            return None if below in stand.on else supports
         if relation == "packed":
             return self._why_not("contained", name, fact[3], stand)
         if fact[3] in self._places["supported"]:
             return self._why_not("supported", name, fact[3], stand)
-        return stand.why if below in stand.on else rests
+        return stand.why if below in stand.on else supports
 
     def _why_not(self, relation: str, body: str, place: str, stand: SupportContact) -> str | None:
         if relation == "supported":

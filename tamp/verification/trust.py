@@ -135,7 +135,7 @@ def trusted_relations(
         {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
     )
 
-    settled = {
+    decided_elsewhere = {
         *decided,
         *domain.fluent_predicates,
         *domain.derived_predicates,
@@ -147,7 +147,7 @@ def trusted_relations(
     found = {
         names.get(predicate, predicate)
         for predicate, sign in _rested_on(plan, domain, goal)
-        if predicate not in settled and predicate in (stated if sign else certified)
+        if predicate not in decided_elsewhere and predicate in (stated if sign else certified)
     }
     return tuple(sorted(found))
 

@@ -214,10 +214,8 @@ class Passage:
             return None
         _, _, free = self._floor
         # Behind a door there is room to stand; beside a wall there is no door.
-        standing = near & (free >= self.radius)
-        return self._gap(
-            int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
-        )
+        roomy = near & (free >= self.radius)
+        return self._gap(int(np.argmax(np.where(roomy if roomy.any() else near, widest, -1.0))))
 
     def narrow(self, goal: Float[Array, " 2"]) -> Gap | None:
         """Find the narrowest place on the widest way to a base position (2,), where the base hardly

@@ -92,7 +92,7 @@ def with_complements(
         return domain, goal
     signs = _signs(domain, goal)
     both = [
-        predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2
+        predicate for predicate in _dependent(domain, names) if len(signs.get(predicate, ())) == 2
     ]
     instead = Complements(
         names, {predicate: complement_name(predicate, domain) for predicate in both}
@@ -135,7 +135,7 @@ def _rewritten(action: Action, instead: Complements) -> Action:
     )
 
 
-def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
+def _dependent(domain: Domain, decided: Collection[str]) -> list[str]:
     """Return the derived predicates that rest on decided ones, in any number of steps."""
     found: dict[str, None] = {}
     more = True

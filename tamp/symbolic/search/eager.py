@@ -53,12 +53,12 @@ def astar(search: SearchSpace) -> Plan | None:
                 continue
             search.best[after] = reached
             search.parents[after] = (state, operator)
-            rest = estimates.get(after)
-            if rest is None:
-                rest = max(0.0, h - step)
-            if reached + rest < search.below:
+            to_go = estimates.get(after)
+            if to_go is None:
+                to_go = max(0.0, h - step)
+            if reached + to_go < search.below:
                 number -= 1
-                heappush(queue, (reached + rest, rest, number, reached, after, state))
+                heappush(queue, (reached + to_go, to_go, number, reached, after, state))
 
     search.bound = search.below
     return None

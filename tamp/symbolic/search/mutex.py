@@ -111,9 +111,9 @@ class Mutexes:
 
         kept = list(range(len(possible)))
         for index in list(kept):
-            rest = [k for k in kept if k != index]
-            if not self._all([possible[k] for k in rest]):
-                kept = rest
+            others = [k for k in kept if k != index]
+            if not self._all([possible[k] for k in others]):
+                kept = others
         return tuple(self._parts[k].literal for k in kept)
 
     def _all(self, possible: list[list[tuple[int, ...]]]) -> bool:

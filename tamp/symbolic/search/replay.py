@@ -198,11 +198,11 @@ class _World:
                     len(self._of(one)),
                 ),
             )
-            rest = [one for one in atoms if one is not atom]
+            others = [one for one in atoms if one is not atom]
             for fact in self._of(atom):
                 grown = self._matched(atom, fact, names, binding)
                 if grown is not None:
-                    yield from self._join(rest, names, grown)
+                    yield from self._join(others, names, grown)
             return
 
         left = [name for name in names if name not in binding]

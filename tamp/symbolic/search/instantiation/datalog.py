@@ -295,6 +295,6 @@ def _triggered(
         fresh.add(atom.predicate, delta[atom.predicate])
         variables = tuple(dict.fromkeys(term for term in atom.terms if term.startswith("?")))
         start = join(fresh, Body((atom,)), (), [()], variables)
-        rest = rule.body.positive[:position] + rule.body.positive[position + 1 :]
-        body = Body(rest, rule.body.negative, rule.body.equalities)
+        others = rule.body.positive[:position] + rule.body.positive[position + 1 :]
+        body = Body(others, rule.body.negative, rule.body.equalities)
         yield from join(relations, body, variables, start, rule.variables)

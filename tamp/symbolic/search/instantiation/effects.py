@@ -191,12 +191,12 @@ class Effects:
         conditional: dict[tuple[Facts, Facts, Facts], tuple[list[Fact], list[Fact]]] = {}
         for number, (adds, key, instances) in enumerate(self._expanded):
             at = key(row)
-            always, rest = self._split(number, at, instances.get(at, []))
+            always, depending = self._split(number, at, instances.get(at, []))
             if adds:
                 added += always
             elif always:
                 universal.append(always)
-            for positive, negative, static, fact in rest:
+            for positive, negative, static, fact in depending:
                 positive -= before
                 if not positive.isdisjoint(negative) or not negative.isdisjoint(before):
                     continue
