@@ -87,7 +87,7 @@ def page() -> str:
         "",
         "What comes with tamp from others, each with its licence beside it: the Panda's description and meshes",
         "(`tamp/geometric/robot/assets/franka_panda`, Apache 2.0), UR5's, xArm7's and PR2's descriptions and hulls",
-        "(`ur5`, `xarm7`, `pr2` beside it, BSD), the mug (`problems/assets/objects`, zlib), and the",
+        "(`ur5`, `ur5_suction`, `xarm7`, `pr2` beside it, BSD), the mug (`problems/assets/objects`, zlib), and the",
         "convex parts of pybullet_data's objects that data are made with (`grounding/assets`, zlib).",
         "",
         "| package | for | licence |",

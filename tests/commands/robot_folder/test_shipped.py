@@ -20,7 +20,10 @@ from tamp.verification.verify import verify
 
 
 def problem_for(name: str, size: str) -> str:
-    return f"bench_{size}" if ROBOTS[name]().drive == "fixed" else size
+    robot = ROBOTS[name]()
+    if robot.suction is not None and size == "four_objects":
+        return "parcels"  # no mug: what is open closes no cup
+    return f"bench_{size}" if robot.drive == "fixed" else size
 
 
 @pytest.mark.parametrize("name", SHIPPED)
