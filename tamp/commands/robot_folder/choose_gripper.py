@@ -40,6 +40,7 @@ def named_fingers(description: Description, wanted: Wanted) -> tuple[Joint, Join
                 )
     if wanted.fingers is None:
         return None
+
     found: list[Joint] = []
     for name in wanted.fingers:
         if name not in description.joints:

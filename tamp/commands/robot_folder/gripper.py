@@ -124,6 +124,7 @@ def suction_cup(radius: float, force: float | None, T_tip_hand: Pose) -> Gripper
             f"{LARGEST_CUP:g} m",
             remedy="Give its radius in metres",
         )
+
     area = math.pi * radius**2
     if force is not None and force > MOST_VACUUM * area:
         raise InputError(
@@ -131,6 +132,7 @@ def suction_cup(radius: float, force: float | None, T_tip_hand: Pose) -> Gripper
             f"{MOST_VACUUM * area:.3g} N at most",
             remedy="The air presses with no more: give a larger --suction or a smaller --force",
         )
+
     side = PALM[0]
     palm = _box((side, side, PALM[2]), (0.0, 0.0, PALM[2] / 2))
     angles = (np.arange(CUP_CORNERS) + 0.5) * 2 * math.pi / CUP_CORNERS

@@ -155,6 +155,7 @@ def _gripper_lines(robot: Robot) -> list[str]:
             f"  tilt: {robot.suction.tilt!r}",
             f"  force: {robot.force!r}",
         ]
+
     lines = [
         "gripper:",
         "  kind: parallel",

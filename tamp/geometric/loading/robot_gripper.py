@@ -27,7 +27,7 @@ _ENTRIES = {
 
 @dataclass(frozen=True)
 class ReadGripper:
-    """What a robot.yaml says of its gripper; the names are those of `Robot`.
+    """A gripper as a robot.yaml describes it; the names are those of `Robot`.
 
     Attributes:
         node: Where the hand is named.
@@ -52,6 +52,7 @@ def read_gripper(node: Node) -> ReadGripper:
     some = node.mapping()
     kind = some["kind"].text(KINDS, "kind of gripper") if "kind" in some else "parallel"
     entries = node.mapping(_ENTRIES[kind], required=_ENTRIES[kind])
+
     hand, force = entries["hand"], entries["force"].number(positive=True)
     fingers: tuple[Joint, ...] = ()
     opening, suction = 0.0, None
