@@ -119,14 +119,16 @@ class Player:
             self._passing = world.bound
             world.detach()
         world.opening = float(segment.opening[-1])
-        world.squeezing = segment.attach is not None and self._grasp == "friction"
+        # A cup's vacuum is a constraint in either way: friction alone holds nothing from above.
+        binds = self._grasp == "constraint" or not world.finger_links
+        world.squeezing = segment.attach is not None and not binds
         self._wait(lasts, watch)
-        if segment.attach is not None and self._grasp == "constraint" and self._between(body):
+        if segment.attach is not None and binds and self._between(body):
             world.attach(body)
 
     def _between(self, body: str | None) -> TypeGuard[str]:
-        """Check whether the body is where the fingers close: what is not there is not held by a
-        constraint either.
+        """Check whether the body is where the fingers close, or at the cup: what is not there is
+        not held by a constraint either.
         """
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 

@@ -54,5 +54,5 @@ def limits_of(robot: Robot) -> MakersLimits:
     listed = MAKERS_LIMITS.get(robot.name) if robot.folder.parent == ASSETS else None
     return listed or MakersLimits(
         robot.lower, robot.upper, robot.velocity, robot.acceleration,
-        min(finger.velocity for finger in robot.fingers), robot.opening, (),
+        robot.finger_speed, robot.opening, (),
     )  # fmt: skip

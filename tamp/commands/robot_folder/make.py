@@ -126,9 +126,9 @@ def _robot(
         wanted.drive, wanted.height, wanted.mount, arm, links[0]
     )
 
-    fingers = (renamed[1], renamed[2])
+    hand, *fingers = renamed
     links += [
-        Link(renamed[0], _parts(gripper.hand)),
+        Link(hand, _parts(gripper.hand)),
         *(
             Link(finger.child, _parts(hulls))
             for finger, hulls in zip(fingers, gripper.finger_hulls, strict=True)
@@ -143,12 +143,12 @@ def _robot(
         links=(Link(base, (box,)), *links),
         base=base,
         foot=foot.name,
-        hand=renamed[0],
+        hand=hand,
         T_base_arm=T_base_arm,
         joints=arm.joints,
         T_flange_hand=arm.T_last_tip @ gripper.T_tip_hand,
         T_hand_tool=gripper.T_hand_tool,
-        fingers=fingers,
+        fingers=tuple(fingers),
         lower=lower,
         upper=upper,
         velocity=(*velocity, *arm.velocity),
@@ -161,6 +161,7 @@ def _robot(
         drive=wanted.drive,
         effort=arm.effort,
         force=gripper.force,
+        suction=gripper.suction,
         payload=wanted.payload,
     )
 
@@ -173,15 +174,15 @@ def _bound(joint: Joint, limit: float, inwards: float) -> float:
     )
 
 
-def _unused(gripper: Gripper, names: set[str]) -> tuple[str, Joint, Joint]:
+def _unused(gripper: Gripper, names: set[str]) -> tuple[str, *tuple[Joint, ...]]:
     """Give the gripper's links and joints names that the arm has not."""
-    hand = gripper.fingers[0].parent
+    hand = gripper.name
     mark = "gripper_" if names & {hand, *(one.child for one in gripper.fingers)} else ""
-    left, right = (
+    fingers = (
         replace(one, name=mark + one.name, parent=mark + hand, child=mark + one.child)
         for one in gripper.fingers
     )
-    return mark + hand, left, right
+    return mark + hand, *fingers
 
 
 def _parts(hulls: Sequence[Hull]) -> tuple[Part, ...]:
