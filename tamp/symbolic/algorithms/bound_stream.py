@@ -24,12 +24,8 @@ MOST_WARNINGS = 100
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function and output types.
-
-    Attributes:
-        advises: Whether it only takes advice from its fluents: what it certifies holds in any
-            state.
-        kind: What it is asked for, which sorts the time that it takes.
+    """A declared stream, its function and output types; whether it `advises` only, so that what it
+    certifies holds in any state; and its kind, which sorts the time that it takes.
     """
 
     declaration: Stream
