@@ -269,7 +269,8 @@ class _Run:
             return self._explanation[0]
 
         truth, found = self._look(), done.deviations
-        mended = replanner.mend(truth, grasp, self._plan, self._queue, found, self._expected)
+        expected, goal = self._expected, self._goal
+        mended = replanner.mend(truth, grasp, self._plan, self._queue, found, expected, goal)
         if mended.keeps:
             self._kept += 1
             self._planned_for = frozenset(world.scene.bodies)

@@ -16,9 +16,10 @@ from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.classifier import Unanswered, probability
 from tamp.geometric.scene.pose import pose_difference
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.relations import POSE
 from tamp.symbolic.pddl.structs import Atom, Formula, Not
-from tamp.verification.formulas import flat, show
+from tamp.verification.formulas import flat
 from tamp.verification.semantics import Semantics, State
 
 NONE = Own({})
@@ -73,7 +74,7 @@ def judged(
         holds = semantics.holds(part, state)
         name, probability = _classified(part, truth, held, said)
         why = None if holds else _reason(part, truth, held) or _moved(part, there, expected, own)
-        found.append(GoalFact(show(part), holds, why, name, probability))
+        found.append(GoalFact(to_text(part), holds, why, name, probability))
     return tuple(found)
 
 

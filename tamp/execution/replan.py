@@ -5,7 +5,6 @@ not.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -83,6 +82,7 @@ class Replanner:
         remaining: Sequence[TimedAction],
         found: Sequence[Deviation],
         expected: Expected,
+        goal: Formula,
     ) -> Mended:
         """Keep the rest of the plan or plan anew.
 
@@ -93,9 +93,10 @@ class Replanner:
             remaining: Its actions that are still to come.
             found: What is not as expected.
             expected: What is expected now.
+            goal: The problem's: of bodies that are gone, those that it names are needed.
         """
         loaded = self._stored.loaded
-        asked = set(re.findall(r"[^\s()]+", loaded.goal.text.lower()))
+        asked = {term for atom, _ in signed_atoms(goal) for term in atom.terms}
         gone = sorted(
             name
             for name in loaded.scene.bodies.keys() - truth.scene.bodies.keys()
