@@ -9,7 +9,7 @@ import pytest
 
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.execution.replan import Replanner
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
@@ -66,9 +66,9 @@ def test_the_rest_is_kept_when_it_still_holds(
 ) -> None:
     expected = expectation(stored)
     scene = moved(stored.loaded.scene, name, x, y)
-    truth = Truth(scene, expected.facts, {})
+    truth = ObservedScene(scene, expected.facts, {})
     found = [Deviation("displaced", name, "it moved")]
-    mended = Replanner(stored).mend(
+    mended = Replanner(stored).replan(
         truth, None, stored.plan, stored.plan.actions, found, expected, GOAL
     )
     assert mended.keeps is keeps
@@ -85,8 +85,14 @@ def test_a_body_where_another_one_should_go_is_in_the_way(stored: Stored) -> Non
     scene = moved(scene, "block", float(where[0, 3]) - block[0], float(where[1, 3]) - block[1])
     found = [Deviation("displaced", "block", "it moved")]
     first = expectation(stored)
-    mended = Replanner(stored).mend(
-        Truth(scene, frozenset(), {}), None, stored.plan, stored.plan.actions, found, first, GOAL
+    mended = Replanner(stored).replan(
+        ObservedScene(scene, frozenset(), {}),
+        None,
+        stored.plan,
+        stored.plan.actions,
+        found,
+        first,
+        GOAL,
     )
     assert not mended.keeps and mended.plan is not None, mended.explanation
 
@@ -95,10 +101,10 @@ def gone(stored: Stored, name: str, goal: Formula) -> tuple[str, ...]:
     """What is said when a body has gone."""
     scene = stored.loaded.scene
     bodies = {other: body for other, body in scene.bodies.items() if other != name}
-    truth = Truth(replace(scene, bodies=MappingProxyType(bodies)), frozenset(), {})
+    truth = ObservedScene(replace(scene, bodies=MappingProxyType(bodies)), frozenset(), {})
     return (
         Replanner(stored)
-        .mend(
+        .replan(
             truth, None, stored.plan, stored.plan.actions, [Deviation("gone", name, "it is gone")],
             expectation(stored), goal,
         )
