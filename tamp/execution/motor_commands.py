@@ -10,7 +10,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
-from tamp.execution.monitoring import EVERY, Watch
+from tamp.execution.monitoring import EVERY, ContactMonitor
 from tamp.plan.read import Segment
 from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 
@@ -23,7 +23,7 @@ REST = 0.15
 Event = Callable[[], None]
 
 
-class Player:
+class TrajectoryPlayer:
     """Carries out segments one after the other.
 
     Args:
@@ -44,7 +44,7 @@ class Player:
         self,
         segment: Segment,
         body: str | None,
-        watch: Watch,
+        watch: ContactMonitor,
         event: Event | None = None,
         at: float = 0.0,
         guard: str | None = None,
@@ -80,7 +80,12 @@ class Player:
         world.squeezing, world.opening = False, world.widest
 
     def _follow(
-        self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None
+        self,
+        segment: Segment,
+        watch: ContactMonitor,
+        event: Event | None,
+        at: float,
+        guard: str | None,
     ) -> bool:
         world = self._world
         first = 0 if segment.part == "base" else 3
@@ -112,7 +117,7 @@ class Player:
         self._wait(REST, watch)
         return step == count - 1
 
-    def _finger(self, segment: Segment, body: str | None, watch: Watch) -> None:
+    def _finger(self, segment: Segment, body: str | None, watch: ContactMonitor) -> None:
         world = self._world
         lasts = max(float(segment.times[-1]), CLOSING)
         if segment.detach is not None and world.bound is not None:
@@ -132,7 +137,7 @@ class Player:
         """
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 
-    def _wait(self, seconds: float, watch: Watch) -> None:
+    def _wait(self, seconds: float, watch: ContactMonitor) -> None:
         for step in range(round(seconds * COMMANDS_PER_SECOND)):
             self._world.step_motors()
             if step % EVERY == 0:

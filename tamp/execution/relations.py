@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
@@ -46,7 +46,7 @@ class Own:
     trusted: tuple[str, ...] = ()
 
     def observe(
-        self, truth: Truth, held: str | None, expected: Expected, at: Mapping[str, str]
+        self, truth: ObservedScene, held: str | None, expected: Expected, at: Mapping[str, str]
     ) -> dict[str, Observation]:
         """Observe what the classifiers say of what is seen, by relation; `at` names the poses of
         bodies that stand.
@@ -60,7 +60,7 @@ class Own:
             for name, (relation, _, classifier) in self.asked.items()
         }
 
-    def missed(self, truth: Truth, held: str | None, expected: Expected) -> frozenset[Fact]:
+    def missed(self, truth: ObservedScene, held: str | None, expected: Expected) -> frozenset[Fact]:
         """Return relations that should hold by the plan and do not, as (relation, *arguments) in
         PDDL's names.
         """

@@ -12,11 +12,11 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.world import World
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD, Certified
 from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
 from tamp.verification.execution_state import ExecutionState, Held
-from tamp.verification.formulas import show
 from tamp.verification.limits import limit_violations
 from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
@@ -119,7 +119,7 @@ class Replay:
 
         for part in self._semantics.unmet(lifted, action.arguments, state):
             bodies = (argument for argument in action.arguments if argument in self._bodies)
-            self.log.add("precondition", f"{show(part)} does not hold", *bodies)
+            self.log.add("precondition", f"{to_text(part)} does not hold", *bodies)
         if isinstance(lifted.cost, int | float) and abs(lifted.cost - action.cost) > 1e-6:
             self.log.add("state", f"the action costs {lifted.cost:g}, not {action.cost:g}")
         return self._semantics.apply(lifted, action.arguments, state)

@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 from tamp.plan.read import PlanFile
 from tamp.simulation.world import World
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.verification.formulas import facts as facts_of
-from tamp.verification.formulas import show
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_geometry import SupportContact, Supports
@@ -115,7 +115,7 @@ class SupportRelations:
     def check_goal(self, goal: Formula, state: State, in_hand: str | None) -> None:
         """Check the goal by the facts, and again by what the bodies say is on and inside what."""
         if not self._semantics.holds(goal, state):
-            self._log.add("goal", f"{show(goal)} does not follow from the facts at the end")
+            self._log.add("goal", f"{to_text(goal)} does not follow from the facts at the end")
 
         observed: set[Fact] = set()
         reasons: dict[Fact, str] = {}
@@ -140,7 +140,7 @@ class SupportRelations:
             asked = "; ".join(
                 f"({' '.join(fact)}): {why}" for fact, why in reasons.items() if fact in wanted
             )
-            message = f"{show(goal)} does not hold in the geometry at the end"
+            message = f"{to_text(goal)} does not hold in the geometry at the end"
             self._log.add("goal", f"{message}: {asked}" if asked else message)
 
     def _check_relation(self, fact: Fact, in_hand: str | None) -> None:

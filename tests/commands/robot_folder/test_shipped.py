@@ -11,7 +11,7 @@ import pytest
 import tamp
 from tamp.commands.robot_folder.check import against_physics
 from tamp.commands.robot_folder.self_collision import home_collision
-from tamp.execution.execute import Circumstances, execute
+from tamp.execution.execute import ExecutionOptions, execute
 from tamp.geometric.loading.robots import ROBOTS, SHIPPED
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
@@ -71,4 +71,4 @@ def test_it_solves_a_problem_that_is_judged_and_carried_out(
     tamp.write_plan(solution, plan)
     report = verify(plan)
     assert report.holds, report.text()
-    assert execute(open_plan(plan), Circumstances(grasp="constraint")).reached
+    assert execute(open_plan(plan), ExecutionOptions(grasp="constraint")).reached
