@@ -14,6 +14,7 @@ from numpy.random import Generator as Random
 
 from grounding.demonstrate.models import sample_body, sample_furniture
 from grounding.demonstrate.relation import Argument, Relation
+from grounding.demonstrate.viewer import nearest_side, stand_of
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import (
     BodyEntry,
@@ -97,6 +98,24 @@ class Stage:
         }
         return replace(self, entries=entries, scene=_read(entries))
 
+    def fronted(self, eye: float) -> Stage:
+        """Return the same scene, in which what the arguments stand on has its front on the side
+        that is nearest to the viewer.
+
+        Args:
+            eye: The direction from there to the viewer's eye, radians in the world.
+
+        Raises:
+            InputError: The arguments stand on nothing.
+        """
+        stand = stand_of(self.scene, self.arguments)
+        if stand is None:
+            raise InputError("the arguments stand on nothing that has a front")
+        entry = self.entries[stand.name]
+        shape = {**entry.shape, "front": f"{nearest_side(stand, eye)} deg"}
+        entries = {**self.entries, stand.name: replace(entry, shape=shape)}
+        return replace(self, entries=entries, scene=_read(entries))
+
     def file(self, label: Label, note: str = "") -> DemonstrationFile:
         """Return the demonstration file of this scene."""
         return DemonstrationFile(self.entries, (label,), note)
@@ -177,28 +196,6 @@ def choices_of(argument: Argument, scene: Scene) -> list[str]:
         found = [*scene.movable, *scene.surfaces, *scene.cavities]
     if not found:
         raise InputError(f"the scene has no {argument.kind} for the argument {argument.name}")
-    return found
-
-
-def viewer_yaw(scene: Scene, arguments: tuple[str, ...]) -> float:
-    """Return the yaw, radians, of the direction in which a viewer looks from the front of what the
-    arguments stand on.
-    """
-    stand = stand_of(scene, arguments)
-    return math.pi / 2 if stand is None else stand.pose.yaw + stand.front + math.pi / 2
-
-
-def stand_of(scene: Scene, arguments: tuple[str, ...]) -> Body | None:
-    """Return the furniture that the arguments stand on, or are places of; None for none."""
-    found: Body | None = None
-    for name in arguments:
-        body = scene.bodies.get(name)
-        support = name if body is None or body.support is None else body.support
-        place = scene.surfaces.get(support) or scene.cavities.get(support)
-        owner = None if place is None else scene.bodies[place.body]
-        if owner is not None and owner.surfaces:
-            return owner
-        found = found or owner  # a container, unless there is a table
     return found
 
 
