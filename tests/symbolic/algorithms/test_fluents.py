@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import pytest
 
@@ -138,9 +139,7 @@ def test_motion_into_a_wall_is_given_up() -> None:
     problem = StreamTask(
         problem.task,
         tuple(
-            type(stream)(stream.declaration, plan_way, stream.output_types)
-            if stream.name == "plan-way"
-            else stream
+            replace(stream, function=plan_way) if stream.name == "plan-way" else stream
             for stream in problem.streams
         ),
         problem.values,
@@ -185,7 +184,7 @@ def test_advice_is_taken_from_any_state(algorithm: str) -> None:
     problem = StreamTask(
         problem.task,
         tuple(
-            type(s)(s.declaration, sample_aside, s.output_types) if s.name == "sample-aside" else s
+            replace(s, function=sample_aside) if s.name == "sample-aside" else s
             for s in problem.streams
         ),
         problem.values,
