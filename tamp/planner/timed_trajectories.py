@@ -10,8 +10,6 @@ import numpy as np
 
 from tamp.geometric.context import Context
 from tamp.geometric.motion.timing import time_path
-from tamp.geometric.robot.chain import Chain
-from tamp.geometric.robot.kinematics import base_matrix
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp, Grip, Load, Motion, Path
 from tamp.symbolic.algorithms.result import PlanAction
@@ -127,8 +125,9 @@ class PlanTimer:
             for name in (grip.attach.body, *(rider for rider, _ in grip.load)):
                 self._poses.pop(name, None)
         elif self._held is not None:
-            chain = Chain.of(self._context.robot)
-            tool = Pose.from_matrix(base_matrix(self._base) @ chain.tool(self._arm))
+            tool = Pose.from_matrix(
+                self._context.kinematics.tool(self._context.conf(self._base, self._arm))
+            )
             pose = tool @ self._held.T_tool_body
             self._poses[self._held.body] = pose
             self._poses |= {rider: pose @ T_body_rider for rider, T_body_rider in self._load}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -60,18 +59,3 @@ class Chain:
     ]:
         """Return what every kernel takes first."""
         return (self.origins, self.slides, self.T_flange_tool, self.lower, self.upper)
-
-    def tool(self, arm: Float[Array, " n"]) -> Float[Array, "4 4"]:
-        """Compute T_base_tool (4, 4) at joint positions (n,), by FK in plain numpy: for a few poses,
-        for which `Kinematics` would import pinocchio.
-        """
-        T_base_tool = np.eye(4)
-        for origin, slides, position in zip(self.origins, self.slides, arm, strict=True):
-            T_joint = np.eye(4)
-            if slides > 0.0:
-                T_joint[2, 3] = position
-            else:
-                cos, sin = math.cos(position), math.sin(position)
-                T_joint[:2, :2] = ((cos, -sin), (sin, cos))
-            T_base_tool = T_base_tool @ origin @ T_joint
-        return T_base_tool @ self.T_flange_tool

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
-from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
@@ -122,11 +121,3 @@ def test_jacobian_agrees_with_finite_differences(robot: Robot, kinematics: Kinem
             angular = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
             assert np.allclose(jacobian[:, column], np.concatenate([linear, angular]), atol=1e-6)
     assert len(confs) == 10
-
-
-@pytest.mark.parametrize("name", sorted(ROBOTS))
-def test_the_chains_tool_is_pinocchios(name: str) -> None:
-    robot = ROBOTS[name]()
-    chain, kinematics, rng = Chain.of(robot), Kinematics(robot), np.random.default_rng(3)
-    for arm in rng.uniform(robot.lower, robot.upper, (20, len(robot.home))):
-        assert np.abs(chain.tool(arm) - kinematics.arm_tool(arm)).max() < 1e-12
