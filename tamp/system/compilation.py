@@ -17,6 +17,7 @@ import numba
 from numba.core import event
 
 from tamp.system.deadline import STANDSTILL
+from tamp.system.quick_calls import call_directly
 from tamp.system.quick_compiling import (
     code_when_called,
     compare_quickly,
@@ -78,6 +79,7 @@ compare_quickly()
 optimize_with_one_manager()
 generate_code_when_called()
 type_operators_once()
+call_directly()
 refresh_when_there_is_more()
 list_variables_quickly()
 measure_types_once()

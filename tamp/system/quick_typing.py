@@ -22,6 +22,10 @@ ITEMS = ("functions", "getattrs", "setattrs", "casts", "constants", "attributes"
 """Lists of a numba registry, of implementations and of types."""
 
 
+LOCKS = ("numba:compiler_lock", "numba:llvm_lock")
+"""Events that numba times for each function that it compiles."""
+
+
 def type_operators_once() -> None:
     """Remember the types of a built-in operator's result.
 
@@ -101,12 +105,16 @@ def _linear_algebra_taken_on_trust() -> Iterator[None]:
 
 
 def tell_only_listeners() -> None:
-    """Have numba make no event of which nobody is told: it makes two for each call of LLVM."""
-    if not {"_registered", "start_event", "end_event"} <= {*dir(event)}:
+    """Have numba make no event of which nobody is told: it makes two for each call of LLVM.
+
+    Nor does it listen to itself, once more for each function that is being compiled, to say how
+    long locks were held (`get_metadata`).
+    """
+    if not {"_registered", "start_event", "end_event", "install_timer"} <= {*dir(event)}:
         return
 
     start, end = event.start_event, event.end_event
-    listeners = event._registered
+    listeners, timed = event._registered, event.install_timer
 
     def start_event(kind: str, data: Any = None) -> None:
         if listeners.get(kind):
@@ -116,7 +124,16 @@ def tell_only_listeners() -> None:
         if listeners.get(kind):
             end(kind, data, exc_details)
 
+    @contextmanager
+    def install_timer(kind: str, callback: Any) -> Iterator[Any]:
+        if kind in LOCKS:
+            yield None
+            return
+        with timed(kind, callback) as timer:
+            yield timer
+
     event.start_event, event.end_event = start_event, end_event
+    event.install_timer = install_timer
 
 
 def list_variables_quickly() -> None:

@@ -17,7 +17,7 @@ from numba.core.registry import cpu_target
 from numba.core.types.functions import BaseFunction
 from numba.extending import overload
 
-from tamp.system import compilation, quick_typing
+from tamp.system import compilation, quick_calls, quick_typing
 
 ADDED = (types.float64, types.float64)
 TARGET: Any = cpu_target.target_context
@@ -150,7 +150,7 @@ def test_linear_algebra_is_imported_by_who_calls_it() -> None:
 
 
 def test_numba_has_what_the_shortcuts_change() -> None:
-    assert BaseFunction.get_call_type.__module__ == quick_typing.__name__
+    assert BaseFunction.get_call_type.__module__ == quick_calls.__name__  # the outer of two
     assert base.BaseContext.refresh.__module__ == quick_typing.__name__
     assert base.BaseContext.get_abi_sizeof.__module__ == quick_typing.__name__
     assert ir.Inst._rec_list_vars.__module__ == quick_typing.__name__

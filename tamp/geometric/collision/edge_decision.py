@@ -191,11 +191,11 @@ def scratch(parts, joints, pairs, obstacles, size, moves):
     n, moved = parts.shape[0], joints.shape[0] + 1
     numbers, rows = np.empty(3 * size + 7), np.empty((moved + 5 + 2 * n, 12))
     reach = np.empty((n, moved + 7))
-    ready = np.empty(n, dtype=np.int64)
-    found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), dtype=np.int64)
+    ready = np.empty(n, np.int64)
+    found = np.empty((n + pairs.shape[0] + n * obstacles.shape[0], 2), np.int64)
     intervals = np.empty((INTERVALS if moves else 1, 2))
-    lists = np.empty((INTERVALS if moves else 1, 2), dtype=np.int64)
-    tasks = np.empty((TASKS if moves else 0, 2), dtype=np.int64)
+    lists = np.empty((INTERVALS if moves else 1, 2), np.int64)
+    tasks = np.empty((TASKS if moves else 0, 2), np.int64)
     guesses = np.empty((TASKS if moves else 0, 3))
     return numbers, rows, reach, ready, found, intervals, lists, tasks, guesses
 

@@ -89,7 +89,9 @@ def _compiled(sources: int) -> Callable[..., Array]:
     def passes(stations, tangents, steepest, before, after, velocity, acceleration):
         n, d = tangents.shape
         slopes, bends, limits = np.empty(2 * d), np.empty(2 * d), np.empty(2 * d)
-        reachable, rates = np.zeros(n), np.zeros(n)
+        reachable, rates = np.empty(n), np.empty(n)
+        for i in range(n):
+            reachable[i] = rates[i] = 0.0
         if sources < 0:  # never: so that the number is a part of what is compiled
             return rates
         for i in range(n - 2, 0, -1):

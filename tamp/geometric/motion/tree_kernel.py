@@ -40,7 +40,7 @@ def _compiled(sources: int) -> Callable[..., tuple[Array, int]]:
 
         geometry, room = geometry_of(packed), unpack(packed, np.int64(0))[0]
         work = scratch(geometry[3], geometry[0], geometry[5], geometry[6], size, True)
-        trees, parents = np.empty((2, rows, size)), np.empty((2, rows), dtype=np.int64)
+        trees, parents = np.empty((2, rows, size)), np.empty((2, rows), np.int64)
         domains, counts = np.full((2, rows), np.inf), np.array([1, roots])
         write(start, trees[0], 0)
         for k in range(roots):

@@ -72,7 +72,7 @@ def stretch(origin, direction, normals, offsets, first, seam):
         Whether there is one; where it starts and ends along the line, and the planes there.
     """
     parts = len(first) - 1
-    spans, planes = np.empty((parts, 2)), np.empty((parts, 2), dtype=np.int64)
+    spans, planes = np.empty((parts, 2)), np.empty((parts, 2), np.int64)
     low, high = math.inf, -math.inf
     start = end = -1
     for p in range(parts):

@@ -56,10 +56,11 @@ def touches(
         x, y, z = centre(parts, k, placed)
         for j in range(len(body)):
             bx, by, bz = centre(body, j, body_poses)
+            dx, dy, dz = x - bx, y - by, z - bz
             limit = parts[k, RADIUS] + body[j, RADIUS] + TOUCH
-            if (x - bx) ** 2 + (y - by) ** 2 + (z - bz) ** 2 > limit * limit:
+            if dx * dx + dy * dy + dz * dz > limit * limit:
                 continue
-            guess[0], guess[1], guess[2] = x - bx, y - by, z - bz
+            guess[0], guess[1], guess[2] = dx, dy, dz
             answer = separation(
                 parts, k, placed, body, j, body_poses, vertices, TOUCH, TOUCH, guess, s, weights
             )  # fmt: skip
