@@ -23,6 +23,9 @@ _GREY = (0.8, 0.8, 0.8, 1.0)
 ROUND = 40
 """Corners of what is round."""
 
+FARTHEST_DRAWN_M = 1e6
+"""Metres from a mesh's own origin beyond which a browser's numbers of 32 bits draw nothing."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
@@ -83,8 +86,12 @@ def read_mesh(
             raise InputError(
                 f"the mesh '{file.name}' holds coordinates that are not finite numbers"
             )
+        with np.errstate(over="ignore"):
+            scaled = vertices * np.asarray(scale)
+        if np.abs(scaled).max(initial=0.0) > FARTHEST_DRAWN_M:
+            raise InputError(f"the mesh '{file.name}' reaches farther than can be drawn")
         turned = faces[:, ::-1] if mirrored else faces
-        groups.setdefault(colour or own, []).append((vertices * np.asarray(scale), turned))
+        groups.setdefault(colour or own, []).append((scaled, turned))
     meshes = [_joined(pieces, own) for own, pieces in groups.items()]
     return [simplified(mesh, cell) if cell else mesh for mesh in meshes]
 
@@ -101,18 +108,22 @@ def _coloured(file: Path) -> Iterator[tuple[Array, NDArray[np.integer], Colour]]
     content = ascii_text(content) if file.suffix.lower() == ".obj" else content
     beside: Any = Beside(file.parent)
     try:
-        loaded: Any = trimesh.load_scene(
-            io.BytesIO(content), file_type=file.suffix.lower()[1:], resolver=beside, process=False
-        )  # fmt: skip
-        found = [
-            (
-                np.asarray(one.vertices, dtype=float),
-                np.asarray(one.faces, dtype=np.int64),
-                _material(one),
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+            loaded: Any = trimesh.load_scene(
+                io.BytesIO(content),
+                file_type=file.suffix.lower()[1:],
+                resolver=beside,
+                process=False,
             )
-            for one in loaded.dump()
-            if isinstance(one, trimesh.Trimesh)
-        ]
+            found = [
+                (
+                    np.asarray(one.vertices, dtype=float),
+                    np.asarray(one.faces, dtype=np.int64),
+                    _material(one),
+                )
+                for one in loaded.dump()
+                if isinstance(one, trimesh.Trimesh)
+            ]
     except Exception as error:  # trimesh raises whatever its readers stumble on
         raise InputError(
             f"cannot read the mesh '{file.name}': {' '.join(str(error).split())[:200]}"

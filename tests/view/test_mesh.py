@@ -91,7 +91,11 @@ def test_each_colour_of_a_file_is_a_mesh(file: Path) -> None:
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"), ("nothing\n", "t.obj")],
+    [
+        ("v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "not finite"),
+        ("v 0 0 1e308\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "farther than can be drawn"),
+        ("nothing\n", "t.obj"),
+    ],
 )
 def test_what_is_no_mesh_is_refused(file: Path, text: str, words: str) -> None:
     file.write_text(text)

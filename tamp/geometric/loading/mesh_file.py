@@ -65,7 +65,8 @@ def read_triangles(path: Path) -> Triangles:
         raise InputError(f"the mesh '{name}' has more than {MOST_TRIANGLES:,} faces: simplify it")
 
     try:
-        vertices, faces = reader(content, path)
+        with np.errstate(over="ignore", invalid="ignore"):  # what is not finite is refused later
+            vertices, faces = reader(content, path)
     except InputError:
         raise
     except Exception as error:  # trimesh raises whatever its readers stumble on
@@ -181,8 +182,7 @@ def _stl(content: bytes, path: Path) -> Triangles:
 def _stl_records(content: bytes, count: int) -> Array:
     records = np.frombuffer(content, dtype=np.uint8, count=50 * count, offset=84).reshape(count, 50)
     corners = np.ascontiguousarray(records[:, 12:48]).view("<f4").reshape(-1, 3)
-    with np.errstate(invalid="ignore"):  # bytes of anything may be a signalling NaN: refused later
-        return corners.astype(np.float64)
+    return corners.astype(np.float64)
 
 
 def _soup(corners: Array) -> Triangles:

@@ -51,14 +51,15 @@ def read_surface(path: Path, scale: tuple[float, float, float]) -> MeshSurface:
     import trimesh
 
     name = path.name
-    vertices, faces = read_triangles(path)
-    used = np.unique(faces)
-    if not np.isfinite(vertices[used]).all():
-        raise InputError(f"the mesh '{name}' holds coordinates that are not finite numbers")
-    vertices = np.where(np.isfinite(vertices), vertices, 0.0) * np.array(scale)
-    if np.prod(scale) < 0:  # mirrored: what was outside stays outside
-        faces = faces[:, ::-1]
-    _check_size(name, np.ptp(vertices[used], axis=0))
+    with np.errstate(over="ignore", invalid="ignore"):  # what is too large is refused in words
+        vertices, faces = read_triangles(path)
+        used = np.unique(faces)
+        if not np.isfinite(vertices[used]).all():
+            raise InputError(f"the mesh '{name}' holds coordinates that are not finite numbers")
+        vertices = np.where(np.isfinite(vertices), vertices, 0.0) * np.array(scale)
+        if np.prod(np.sign(scale)) < 0:  # mirrored: what was outside stays outside
+            faces = faces[:, ::-1]
+        _check_size(name, np.ptp(vertices[used], axis=0))
     return _closed(name, trimesh.Trimesh(vertices, faces, process=False))
 
 

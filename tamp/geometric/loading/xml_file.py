@@ -30,7 +30,8 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
     """Read the root element of an XML file.
 
     Text that is not of the encoding that it declares (UTF-8 when it declares none) is read as
-    Latin-1: names of parts and materials are all that can suffer.
+    Latin-1: names of parts and materials are all that can suffer. The root's own namespace is no
+    part of names: descriptions with `xmlns=` are read as those without.
 
     Args:
         path: The file.
@@ -42,15 +43,26 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
     text = _text(read_raw(path, most))
     try:
         try:
-            return ElementTree.fromstring(text)
+            root = ElementTree.fromstring(text)
         except ElementTree.ParseError as error:
             if "unbound prefix" not in str(error):
                 raise
-            return ElementTree.fromstring(_bound(text))
+            root = ElementTree.fromstring(_bound(text))
+        return _plain(root)
     except (ElementTree.ParseError, ValueError) as error:
         raise InputError(f"cannot read '{path.name}': {error}") from None
     except RecursionError:
         raise InputError(f"cannot read '{path.name}': nested too deeply") from None
+
+
+def _plain(root: ElementTree.Element) -> ElementTree.Element:
+    """Take the root's namespace off all names in it."""
+    space, bracket, _ = root.tag.rpartition("}")
+    if bracket:
+        for element in root.iter():
+            if isinstance(element.tag, str):
+                element.tag = element.tag.removeprefix(space + bracket)
+    return root
 
 
 def _bound(text: str) -> str:

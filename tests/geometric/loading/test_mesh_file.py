@@ -170,6 +170,13 @@ INPUTS = '<input semantic="VERTEX" source="#v" offset="0"/><input semantic="NORM
 GROUP = f'<triangles count="4">{INPUTS}<p>0 0 2 0 1 0  0 0 1 0 3 0  1 0 2 0 3 0  0 0 3 0 2 0</p></triangles>'
 
 
+def test_transforms_beyond_all_numbers_are_refused_without_a_warning(tmp_path: Path) -> None:
+    far = "<scale>1e200 1e200 1e200</scale>" * 2
+    (tmp_path / "a.dae").write_text(DAE.replace("GROUP", GROUP).replace("NODE", far))
+    with pytest.raises(InputError, match="not finite"):
+        load_mesh(tmp_path / "a.dae")
+
+
 @pytest.mark.parametrize(
     ("node", "low", "high"),
     [

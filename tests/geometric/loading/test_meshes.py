@@ -284,6 +284,7 @@ def test_ply_in_both_ways(tmp_path: Path, encoding: str) -> None:
         ([(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 1, 2)], "one line"),
         ([(0, 0, 0), (1, 0, 0), (1, 1, 0)], [(0, 1, 1)], "no area|one line"),
         (np.array(CUBE) * 1000, CUBE_FACES, "100 x 100 x 100 m large.*scale: 0.001"),
+        (np.where(np.array(CUBE) > 0, 1e308, -1e308), CUBE_FACES, "inf x inf x inf m large"),
         (np.array(CUBE) / 1000, CUBE_FACES, "m small.*scale: 1000"),
     ],
 )

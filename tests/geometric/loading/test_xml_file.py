@@ -38,6 +38,14 @@ def test_text_is_read_in_whatever_encoding(tmp_path: Path, content: bytes) -> No
     assert (root.tag, root.get("name"), len(root)) == ("robot", "Grüße", 1)
 
 
+def test_the_namespace_of_the_whole_file_is_no_part_of_names(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf"
+    text = '<robot xmlns="http://www.ros.org" xmlns:g="urn:g"><link/><g:link/></robot>'
+    file.write_text(text, encoding="utf-8")
+    root = read_xml(file)
+    assert [root.tag, *(part.tag for part in root)] == ["robot", "link", "{urn:g}link"]
+
+
 @pytest.mark.parametrize("encoding", ["rot13", "hex", "zip", "idna", "no-such"])
 def test_an_encoding_that_is_no_text_is_not_obeyed(tmp_path: Path, encoding: str) -> None:
     file = tmp_path / "r.urdf"
