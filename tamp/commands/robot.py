@@ -32,8 +32,8 @@ class Make:
 
     The arm is the chain of joints between two links. A parallel gripper of ours is bolted to its
     tip, in place of whatever hangs there, unless --gripper names the two sliding finger joints of
-    the URDF's own. docs/adding-a-robot.md goes through it. What was interrupted goes on where it was
-    when it is asked for again.
+    the URDF's own. docs/adding-a-robot.md goes through it. What was interrupted goes on where it
+    was when it is asked for again.
 
     Exit status: 0 made, 2 bad input.
     """

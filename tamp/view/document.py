@@ -13,6 +13,7 @@ from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.view.appearance import body_meshes, robot_meshes
+from tamp.view.inspection import inspection
 from tamp.view.mesh import Mesh
 from tamp.view.picture import framing
 from tamp.view.samples import SampleMarker
@@ -39,6 +40,7 @@ def page_document(
         "samples": _samples(sample_markers),
         "story": _story(story),
         "view": _view(timeline),
+        "inspection": inspection(timeline.robot) if timeline.inspected else None,
     }
 
 

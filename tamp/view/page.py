@@ -16,6 +16,9 @@ from tamp.system.outputs import write_whole
 
 ASSETS = Path(__file__).resolve().parent / "assets"
 
+SCRIPTS = ("page.js", "robot.js", "start.js")
+"""Of the page, in this order, after the one that draws."""
+
 
 def page(document: Mapping[str, Any]) -> str:
     """Render the HTML page of a document from `page_document`."""
@@ -24,7 +27,7 @@ def page(document: Mapping[str, Any]) -> str:
     parts = {
         "@TITLE@": html.escape(str(document["title"])),
         "@STYLE@": _asset("page.css"),
-        "@SCRIPT@": f"{drawing_script()}\n{_asset('page.js')}",
+        "@SCRIPT@": "\n".join((drawing_script(), *map(_asset, SCRIPTS))),
         "@DATA@": data.replace("<", "\\u003c"),  # so that no name ends the script element
     }
     return filled(_asset("page.html"), parts)

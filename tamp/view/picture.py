@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tamp.errors import InputError
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.bounds import bounds
-from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.system.outputs import write_whole
 from tamp.view.appearance import body_meshes, robot_meshes
 from tamp.view.mesh import Mesh, simplified
@@ -102,6 +102,8 @@ def framing(timeline: Timeline, size: tuple[int, int], angle: float = 30.0) -> C
         for x, y in timeline.rows[::20, :2]
     ]
     boxes += [(np.array([*timeline.rows[0, :2], 0.4]), np.array([*timeline.rows[0, :2], 1.1]))]
+    if timeline.inspected:
+        boxes += _links(timeline)
     corners = np.array(
         [
             corner
@@ -123,6 +125,15 @@ def framing(timeline: Timeline, size: tuple[int, int], angle: float = 30.0) -> C
         target = target + (plane.min(axis=0) + plane.max(axis=0)) / 2 * distance @ frame[:2]
 
     return Camera(_three(target - ahead * distance), _three(target), angle)
+
+
+def _links(timeline: Timeline) -> list[tuple[Array, Array]]:
+    """Return the boxes around the robot's links where it starts."""
+    robot, row = timeline.robot, timeline.rows[0]
+    poses = Kinematics(robot).link_poses(row[:-1], float(row[-1]))
+    return [
+        bounds(link.parts, Pose.from_matrix(poses[link.name])) for link in robot.links if link.parts
+    ]
 
 
 def write_png(

@@ -43,7 +43,7 @@ def robot_timeline(robot: Robot, model: str) -> Timeline:
     if robot.fingers:
         widest = robot.opening
         go("fingers", len(home) - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
-    return Timeline(scene, robot, tuple(actions), np.array(times), np.array(rows), {})
+    return Timeline(scene, robot, tuple(actions), np.array(times), np.array(rows), {}, True)
 
 
 def described(robot: Robot) -> str:

@@ -59,6 +59,7 @@ class Timeline:
         rows: The robot [x, y, yaw, q1..qn, opening] at these times, shape (n, 4 + joints), linear
             in between.
         stays: Where each movable body is, one after the other.
+        inspected: Whether it is about the robot alone, which is shown with all that it is made of.
     """
 
     scene: Scene
@@ -67,6 +68,7 @@ class Timeline:
     times: Array
     rows: Array
     stays: Mapping[str, tuple[PoseInterval, ...]]
+    inspected: bool = False
 
     @property
     def duration(self) -> float:

@@ -58,6 +58,18 @@ def _read(file: Path) -> dict[str, Array]:
     return table
 
 
+def reached_share(robot: Robot) -> tuple[Array, Array, Float[Array, "heights distances"]]:
+    """Return heights above the floor and distances from the foot's axis, metres, and the share of
+    the tool's directions in which the arm reaches there.
+
+    Raises:
+        InputError: The robot's table is missing or damaged.
+    """
+    table = _read(asset(robot))
+    share = (table["counts"] > 0).any(axis=3).mean(axis=1)
+    return table["heights"], table["distances"], share
+
+
 class Reachability:
     """Draws base poses from which the arm likely reaches a tool pose.
 

@@ -21,6 +21,9 @@ function rowAt(time) {
   return Float32Array.from({ length: WIDTH }, (_, i) => rows[WIDTH * low + i] * (1 - share) + rows[WIDTH * high + i] * share);
 }
 
+// What the sliders of a robot alone say, else where the film is.
+const rowNow = () => inspected.row || rowAt(state.time);
+
 function linksAt(row) {
   const robot = data.robot, n = robot.joints.length, T = M.mul(M.move(row[0], row[1], 0), M.rotZ(row[2]));
   const places = { [robot.links[0].name]: T };
@@ -29,7 +32,7 @@ function linksAt(row) {
     at = M.mul(M.mul(at, origin), robot.slides[i] ? M.move(0, 0, row[3 + i]) : M.rotZ(row[3 + i]));
     places[robot.links[2 + i].name] = at;
   });
-  const hand = places[robot.links[robot.links.length - 3].name] = M.mul(at, robot.T_flange_hand);
+  const hand = places[robot.links[n + 2].name] = M.mul(at, robot.T_flange_hand);
   for (const finger of robot.fingers) {
     const [x, y, z] = finger.axis.map((part) => (part * row[3 + n]) / 2);
     places[finger.link] = M.mul(M.mul(hand, finger.origin), M.move(x, y, z));
@@ -81,6 +84,7 @@ function prepare() {
     return drawer.buffer(pack(ring.map(([x, y]) => M.at(T, [x, y, 0.003])), COLOURS.place));
   });
   if (data.actions.length) preparePaths();
+  prepareInspection();
   prepareSamples();
 }
 
@@ -126,9 +130,9 @@ function prepareSamples() {
 const shown = (layer) => !state.hidden.has(layer);
 
 function scene() {
-  const row = rowAt(state.time), { places, tool } = linksAt(row);
+  const row = rowNow(), { places, tool } = linksAt(row);
   const solids = [{ mesh: drawn.floor, place: M.one(), paint: [0.86, 0.85, 0.83, 1], floor: true }], lines = [];
-  for (const link of drawn.links) for (const { mesh, colour } of link.meshes) solids.push({ mesh, place: places[link.name], paint: colour });
+  if (shown("links")) for (const link of drawn.links) for (const { mesh, colour } of link.meshes) solids.push({ mesh, place: places[link.name], paint: colour });
   const spots = {}, pointed = state.pointed;
   for (const { body, meshes } of drawn.bodies) {
     const place = spots[body.name] = placeOf(body, state.time, tool);
@@ -137,7 +141,8 @@ function scene() {
     if (pointed && pointed.body === body.name && pointed.kind === "placement")
       for (const { mesh, colour } of meshes) solids.push({ mesh, place: pointed.T, paint: [...colour.slice(0, 3), 0.55] });
   }
-  lines.push({ mesh: drawn.room, kind: "LINE_STRIP" });
+  solids.push(...inspectionSolids(places));
+  lines.push({ mesh: drawn.room, kind: "LINE_STRIP" }, ...inspectionLines(places));
   if (shown("surfaces")) for (const mesh of drawn.surfaces) lines.push({ mesh, kind: "LINE_STRIP" });
   if (drawn.hand && shown("hand path")) lines.push({ mesh: drawn.hand, kind: "LINE_STRIP" });
   if (drawn.base && shown("base path")) lines.push({ mesh: drawn.base, kind: "LINE_STRIP" });
@@ -183,6 +188,7 @@ function show() {
     }
     for (const { name, T } of data.surfaces) label(view, "place " + name, name, [T[3], T[7], T[11]], "place");
   }
+  showSliders(rowNow());
   byId("slider").value = state.time;
   byId("clock").textContent = state.time.toFixed(1) + " / " + duration.toFixed(1) + " s";
   const at = actionAt(state.time);
@@ -203,8 +209,8 @@ function tick(stamp) {
   requestAnimationFrame(tick);
 }
 
-function go(time) { state.time = Math.min(duration, Math.max(0, time)); state.dirty = true; }
-function play() { if (state.time >= duration) state.time = 0; state.playing = !state.playing; state.dirty = true; }
+function go(time) { inspected.row = null; state.time = Math.min(duration, Math.max(0, time)); state.dirty = true; }
+function play() { inspected.row = null; if (state.time >= duration) state.time = 0; state.playing = !state.playing; state.dirty = true; }
 function jump(step) {
   const at = actionAt(state.time), here = data.actions[Math.max(at, 0)];
   const back = step < 0 && state.time > here.start + 0.05;
@@ -254,6 +260,7 @@ function panel() {
   byId("samples").hidden = groups.size === 0;
   for (const [name, group] of [...groups].sort(([a], [b]) => (a in KEPT ? 0 : 1) - (b in KEPT ? 0 : 1) || (a < b ? -1 : 1)))
     check(byId("tests"), name, name + ": " + group.samples.length, group.colour, name in KEPT ? "" : reasons(group.samples));
+  inspectionPanel();
   story();
 }
 
@@ -347,19 +354,3 @@ function hands() {
     event.preventDefault();
   });
 }
-
-if (drawer) {
-  prepare();
-  byId("slider").max = duration;
-  byId("player").hidden = !data.actions.length;
-  panel();
-  hands();
-  requestAnimationFrame(tick);
-}
-// What scripts may ask the page.
-window.tamp = {
-  data, state, go, camera, groups,
-  tool: () => linksAt(rowAt(state.time)).tool,
-  links: () => linksAt(rowAt(state.time)).places,
-  bodies: () => Object.fromEntries(data.bodies.map((body) => [body.name, placeOf(body, state.time, window.tamp.tool())])),
-};
