@@ -3,6 +3,7 @@
 python -m benchmarks.relations table --seeds 5      classifier and proposals from 5, 20, 160 labels
 python -m benchmarks.relations lazy --seeds 4       20 labels at one height, one yaw, one size
 python -m benchmarks.relations asking --seeds 4     accuracy by number of labels, with and without being asked
+python -m benchmarks.relations told --seeds 5       20 labels at one yaw, and one more as the warnings ask for it
 python -m benchmarks.relations random --seeds 5     cross-validation of labels at random
 python -m benchmarks.relations physics --seeds 2    proposals dropped in physics, in generated scenes
 python -m benchmarks.relations times                one proposal and one classification through a scene
@@ -16,7 +17,7 @@ import numpy as np
 import tyro
 
 from benchmarks.common import record, table
-from benchmarks.relations.asking import curves
+from benchmarks.relations.asking import curves, told
 from benchmarks.relations.measure import Case, held_out, measured
 from benchmarks.relations.physics import dropped
 from benchmarks.relations.relations import HELD_OUT, RELATIONS
@@ -33,7 +34,7 @@ class Args:
     """What is measured."""
 
     what: tyro.conf.Positional[str]
-    """table, lazy, asking, random, physics or times."""
+    """table, lazy, asking, told, random, physics or times."""
     seeds: int = 5
     """Seeds 0, 1, ..."""
     relations: tuple[str, ...] = tuple(RELATIONS)
@@ -43,9 +44,11 @@ class Args:
 
 
 def main(args: Args) -> None:
-    {"table": _table, "lazy": _lazy, "asking": _asking, "random": _random, "times": _times, "physics": _physics}[
-        args.what
-    ](args)
+    tables = {
+        "table": _table, "lazy": _lazy, "asking": _asking, "told": _told, "random": _random, "times": _times,
+        "physics": _physics,
+    }  # fmt: skip
+    tables[args.what](args)
 
 
 def _table(args: Args) -> None:
@@ -111,6 +114,22 @@ def _means(rows: list[dict[str, object]]) -> dict[str, float]:
     """The mean of each column of numbers."""
     keys = [key for key in rows[0] if key != "relation"]
     return {key: round(float(np.mean([float(str(row[key])) for row in rows])), 3) for key in keys}
+
+
+def _told(args: Args) -> None:
+    rows = []
+    for name in args.relations:
+        found = [told(name, seed) for seed in range(args.seeds)]
+        before, after, left = (round(float(one), 3) for one in np.mean(found, axis=0))
+        rows.append({"relation": name, "one yaw": before, "one more": after, "warnings left": left})
+    for title, names in (("mean of the 13", TUNED), ("mean held out", HELD_OUT)):
+        some = [row for row in rows if row["relation"] in names]
+        if some:
+            rows.append({"relation": title, **_means(some)})
+    for row in rows:
+        if args.record:
+            record(FILE, config={"what": "told", "seeds": args.seeds}, **row)
+    table(rows, f"20 labels at one yaw, and one demonstration more, {args.seeds} seeds")
 
 
 def _asking(args: Args) -> None:

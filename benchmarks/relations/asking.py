@@ -14,6 +14,10 @@ from benchmarks.relations.relations import RELATIONS
 from grounding.relations.asking import questions
 from grounding.relations.committee import fit
 from grounding.relations.evidence import gather
+from grounding.relations.variety import unvaried
+
+DRAWN = 40
+"""Demonstrations at random, of which one is taken that does what is asked for."""
 
 WAYS = ("demonstrator", "random", "asked")
 BEGINNINGS = {"varied": ((3, 2), "", (5, 10, 15, 20)), "one yaw": ((10, 10), "yaw", (20, 21, 24, 27))}
@@ -29,6 +33,28 @@ def curves(relations: Sequence[str], seeds: int) -> list[dict[str, str | float]]
             numbers = {f"{n} labels": round(float(one), 3) for n, one in zip(range(4), mean, strict=True)}
             rows.append({"beginning": beginning, "way": way, "at": " ".join(map(str, at)), **numbers})
     return rows
+
+
+def told(name: str, seed: int) -> tuple[float, float, float]:
+    """Begin with 20 labels at one yaw, and add one demonstration that does what the warnings about yaw ask for.
+
+    Returns:
+        Accuracy before and after, and how many warnings about yaw that one demonstration leaves.
+    """
+    rng = np.random.default_rng(seed)
+    yes, no = shown(name, 10, True, rng, lazy="yaw"), shown(name, 10, False, rng, lazy="yaw")
+    before = accuracy(fit(gather(situations(yes), situations(no), rng)), name, rng)
+    more = [join(yes, shown(name, 1, True, rng)) for _ in range(DRAWN)]
+    left = [_yaw_warnings(one) for one in more]
+    best = int(np.argmin(left))
+    after = accuracy(fit(gather(situations(more[best]), situations(no), rng)), name, rng)
+    return before, after, left[best]
+
+
+def _yaw_warnings(yes: Batch) -> int:
+    s = situations(yes)
+    found = unvaried(s, np.ones(len(s), dtype=bool), "abcdef"[: s.arguments])
+    return sum(key.startswith("yaw") for key, _ in found)
 
 
 def _curve(name: str, seed: int, way: str, good: int, bad: int, lazy: str, at: Sequence[int]) -> list[float]:

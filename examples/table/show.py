@@ -50,6 +50,10 @@ class Table:
         z = self.height + AIR + up + (0.0 if "furniture" in shape else tall(shape) / 2)
         self.bodies[name] = BodyEntry(shape, self.front @ Pose.from_xyz_yaw(x, y, z, yaw))
 
+    def anywhere(self) -> tuple[float, float]:
+        """Draw a place: x to the right and y to the rear of the middle."""
+        return self.u(-0.2, 0.2), self.u(-0.1, 0.1)
+
     def any_yaw(self) -> float:
         """Draw a yaw."""
         return self.u(-math.pi, math.pi)
@@ -145,9 +149,10 @@ def stack(t: Table, holds: bool, way: int) -> Scene:
             (half[0] + wide(above) + t.u(0.01, 0.06), y, 0.0), (half[0] + t.u(0.2, 0.3), y, 0.0),
             (half[0] + t.u(0.0, 0.03), y, up), (x, y, up + t.u(0.03, 0.1)),
         ][way]  # fmt: skip
+    x0, y0 = t.anywhere()
     c, s = math.cos(turn), math.sin(turn)
-    t.put("below", below, 0.0, 0.0, turn)
-    t.put("above", above, c * x - s * y, s * x + c * y, t.any_yaw(), up)
+    t.put("below", below, x0, y0, turn)
+    t.put("above", above, x0 + c * x - s * y, y0 + s * x + c * y, t.any_yaw(), up)
     return ("above", "below"), t.bodies
 
 
@@ -164,9 +169,10 @@ def pack(t: Table, holds: bool, way: int) -> Scene:
             (half[0] + 1.5 * wide(good) + t.u(0.02, 0.06), y, up), (half[0] + t.u(0.2, 0.3), y, 0.0),
             (half[0], y, size[2] + AIR), (x, y, size[2] + t.u(0.01, 0.1)),
         ][way]  # fmt: skip
+    x0, y0 = t.anywhere()
     c, s = math.cos(turn), math.sin(turn)
-    t.put("crate", crate, 0.0, 0.0, turn)
-    t.put("good", good, c * x - s * y, s * x + c * y, t.any_yaw(), up)
+    t.put("crate", crate, x0, y0, turn)
+    t.put("good", good, x0 + c * x - s * y, y0 + s * x + c * y, t.any_yaw(), up)
     return ("good", "crate"), t.bodies
 
 

@@ -93,12 +93,18 @@ def _heights(shown: Situations) -> Iterator[tuple[str, str]]:
 
 def _yaws(shown: Situations, names: Sequence[str]) -> Iterator[tuple[str, str]]:
     n, k = shown.shape.shape
-    if _spread(shown.support[:, 1]) < SAME_YAW:
+    front = shown.support[:, 1]
+    elsewhere = _spread(front) >= SAME_YAW
+    if not elsewhere:
         yield "yaw", "all furniture was turned the same way: show it on one that faces elsewhere"
     for j in range(k):
         yaw = np.array([heading(shown.R[row, j]) for row in range(n)])
         if _spread(yaw) < SAME_YAW:
             yield f"yaw of {j}", f"{names[j]} was always turned the same way: turn it"
+        elif elsewhere and 0 < j < shown.arguments and _spread(yaw - front) < SAME_YAW:
+            # Then left of it and left on the furniture are the same.
+            text = f"{names[j]} was always turned the same way on the furniture: turn it"
+            yield f"yaw of {j} on it", text
 
 
 def _sizes(shown: Situations, names: Sequence[str]) -> Iterator[tuple[str, str]]:

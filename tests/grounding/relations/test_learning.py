@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.relations.geometry import local, pick, situations, trouble
+from benchmarks.relations.asking import told
+from benchmarks.relations.geometry import about_z, local, pick, situations, trouble
 from benchmarks.relations.hand import put, scenes, shown
 from benchmarks.relations.measure import Case, accuracy, holding, measured, steady
 from benchmarks.relations.relations import RELATIONS
@@ -142,6 +143,26 @@ def test_what_is_not_varied_is_warned_of(
 def test_varied_demonstrations_are_not_warned_of(demos: list[Demonstration]) -> None:
     every = joined([situation_of(one.scene, one.arguments) for one in demos])
     assert unvaried(every, np.array([one.holds for one in demos]), ("cup", "plate")) == []
+
+
+def test_a_body_that_is_never_turned_on_the_furniture_is_warned_of() -> None:
+    """Left of it and left on the furniture are the same then, however the furniture is turned."""
+    rng = np.random.default_rng(0)
+    s, holds = situations(shown("left_of_front", 10, True, rng)), np.ones(10, dtype=bool)
+    assert unvaried(s, holds, ("a", "b")) == []
+    s.R[:, 1] = about_z(s.support[:, 1] + 0.3)
+    ((key, text),) = unvaried(s, holds, ("a", "b"))
+    assert key == "yaw of 1 on it"
+    assert text == "b was always turned the same way on the furniture: turn it"
+
+
+@pytest.mark.slow
+def test_one_demonstration_that_does_what_is_asked_for_mends_one_yaw() -> None:
+    found = np.array(
+        [told(name, seed) for name in ("left_of_front", "aligned") for seed in (0, 2, 3)]
+    )
+    before, after, left = found.mean(axis=0)
+    assert before < 0.7 and after > 0.9 and left == 0, found
 
 
 def test_lazy_heights_cost_nothing_and_one_yaw_is_warned_of() -> None:

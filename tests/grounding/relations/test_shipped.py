@@ -57,7 +57,9 @@ def test_what_ships_is_right_about_scenes_that_it_was_not_shown(
 
 
 @pytest.mark.slow
-def test_what_ships_is_what_the_documented_commands_make(show: ModuleType, tmp_path: Path) -> None:
+def test_what_ships_is_what_the_documented_commands_make(
+    show: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     words = str(show.__doc__)
     assert "tamp-learn new stack" in words and "then pack, left_of and between" in words
     for name in ("stack", "pack", "left_of", "between"):
@@ -67,6 +69,7 @@ def test_what_ships_is_what_the_documented_commands_make(show: ModuleType, tmp_p
         assert run(["new", name, "--demos", str(demos), *into]) == DONE
 
         made, ships = read_weights(out), read_weights(shipped_weights(name, "learned"))
+        assert "missing: " not in capsys.readouterr().out, "nothing is left to be shown"
         assert made.card["examples"] == ships.card["examples"]
         assert {*made.arrays} == {*ships.arrays}
         for key, array in made.arrays.items():
