@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tamp.errors import InputError
-from tamp.geometric.samplers.choice import ANY_RELATION, Registry, maker, parse_choice
+from tamp.geometric.samplers.choice import ANY_RELATION, Registry, factory, parse_choice
 from tamp.geometric.samplers.python_file import PYTHON_SUFFIX, parted, python_grounding
 from tamp.system.files import find_problem, shipped
 from tamp.system.python_object import python_source
@@ -177,7 +177,7 @@ def relations(sampler: str, registry: Registry) -> dict[str, str]:
                 served[relation] = f"{Path(file).resolve()}{mode}"
                 continue
             choice = parse_choice(relation, text, registry)
-            maker(relation, choice, registry)()
+            factory(relation, choice, registry)()
             served[relation] = choice.text
         return served
 

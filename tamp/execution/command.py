@@ -20,7 +20,7 @@ from tamp.execution.report import Execution
 from tamp.geometric.samplers.choice import Registry, sampler_choices
 from tamp.geometric.samplers.python_file import given_by_files
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.plan.open import Stored, open_plan
+from tamp.plan.open import PlanBundle, open_plan
 from tamp.planner.solve import ALGORITHMS
 from tamp.simulation.engines import engine
 
@@ -88,7 +88,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
     return execute(stored, execution_options)
 
 
-def _check_options(stored: Stored, named: Mapping[str, str]) -> None:
+def _check_options(stored: PlanBundle, named: Mapping[str, str]) -> None:
     """Check the plan's own options; an object in Python that served a relation of the user's own is
     not in the file.
     """

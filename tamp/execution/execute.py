@@ -22,7 +22,7 @@ from tamp.execution.relations import own_relations
 from tamp.execution.replan import Replanner
 from tamp.execution.report import ActionOutcome, BodyDisplacement, Execution
 from tamp.geometric.scene.pose import Array, pose_difference
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 from tamp.plan.read import PlanFile, TimedAction
 from tamp.plan.sources import plan_hashes, source_file, unquoted
 from tamp.simulation.actuation import MotorSimulation
@@ -47,7 +47,7 @@ MOVED = (0.005, 0.09)
 """Metres and radians: a body that nobody handles and that moved less is not worth a line."""
 
 
-def execute(stored: Stored, execution_options: ExecutionOptions | None = None) -> Execution:
+def execute(stored: PlanBundle, execution_options: ExecutionOptions | None = None) -> Execution:
     """Carry out a plan.
 
     Args:
@@ -79,7 +79,11 @@ def execute(stored: Stored, execution_options: ExecutionOptions | None = None) -
 
 class _Run:
     def __init__(
-        self, stored: Stored, chosen: ExecutionOptions, world: MotorSimulation, observer: Observer
+        self,
+        stored: PlanBundle,
+        chosen: ExecutionOptions,
+        world: MotorSimulation,
+        observer: Observer,
     ) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)

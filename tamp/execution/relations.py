@@ -10,11 +10,11 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
 from tamp.execution.observation import ObservedScene
-from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
+from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, factory, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.registry import STREAMS
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 from tamp.plan.sources import source_file
 from tamp.relations.observed import Observation, moved, observe
 from tamp.symbolic.pddl.complement import atoms_of_conditions
@@ -83,7 +83,7 @@ class Own:
         )
 
 
-def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Named) -> Own:
+def own_relations(stored: PlanBundle, domain: Domain, goal: Formula, classifiers: Named) -> Own:
     """Collect the user's own relations that a plan's goal rests on, or its actions.
 
     Args:
@@ -126,7 +126,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
 
 
 def named_classifiers(
-    stored: Stored,
+    stored: PlanBundle,
     names: Mapping[str, str],
     objects: Mapping[str, Grounding],
     registry: Registry,
@@ -155,7 +155,7 @@ def named_classifiers(
             continue
         try:
             choice = parse_choice(relation, text, registry)
-            made = maker(relation, choice, registry)()
+            made = factory(relation, choice, registry)()
         except InputError:
             if relation in names:
                 raise
@@ -168,7 +168,7 @@ def named_classifiers(
     return found
 
 
-def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Iterable[str]:
+def _own_names(stored: PlanBundle, streams: StreamFile, classifiers: Named) -> Iterable[str]:
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
     sampled = [stream.name.removeprefix(SAMPLE) for stream in streams.streams if stream.outputs]
     named = {*planned, *classifiers, *sampled}

@@ -18,7 +18,7 @@ from tamp.execution.observation import ObservedScene
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry
 from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.values import Grasp
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 from tamp.plan.read import PlanFile, TimedAction, read_plan
 from tamp.plan.sources import source_file
 from tamp.plan.write import plan_text
@@ -58,7 +58,7 @@ class Replanner:
 
     def __init__(
         self,
-        stored: Stored,
+        stored: PlanBundle,
         registry: Registry | None = None,
         max_time: float = 30.0,
         seed: int = 0,

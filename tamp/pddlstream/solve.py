@@ -18,7 +18,7 @@ from tamp.symbolic.algorithms.result import Outcome, Result, SearchStatistics, S
 from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 CLOSER_LOOK = 500
 """Draws after which a plan that no stream promises is given up, when none of them brought facts
@@ -103,7 +103,7 @@ def solve(
     load_compiled_loops()  # before the clock starts
     deadline = Deadline(max_time)
     try:
-        result = Alarm(deadline, strangers=STRANGERS).run(
+        result = Interrupter(deadline, strangers=STRANGERS).run(
             lambda: _run(task, algorithm, seed, deadline)
         )
     except (OutOfTime, KeyboardInterrupt) as end:

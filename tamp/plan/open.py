@@ -18,7 +18,7 @@ from tamp.system.reading import is_file, read_json
 
 
 @dataclass(frozen=True, eq=False)
-class Stored:
+class PlanBundle:
     """A plan file and what belongs to it.
 
     Attributes:
@@ -35,7 +35,7 @@ class Stored:
     robot: Robot
 
 
-def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
+def open_plan(file: str | Path, problem: str | Path | None = None) -> PlanBundle:
     """Read a plan file and the problem that it was made for.
 
     Args:
@@ -61,7 +61,7 @@ def open_plan(file: str | Path, problem: str | Path | None = None) -> Stored:
         raise InputError(
             f"its robot is {plan.robot}, the problem's {loaded.scene.robot.model}", file=path
         )
-    return Stored(plan, read_json(path), loaded, robot_of(plan))
+    return PlanBundle(plan, read_json(path), loaded, robot_of(plan))
 
 
 def read_motions(file: str | Path) -> PlanFile:

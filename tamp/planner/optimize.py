@@ -23,7 +23,7 @@ from tamp.symbolic.algorithms.anytime import solve_anytime
 from tamp.symbolic.algorithms.bound_stream import STRANGERS
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 LEAST = 1e-3
 """The part by which the motion must be shorter to count as an improvement."""
@@ -102,7 +102,7 @@ def optimize(
 
     outcome = Outcome.TIMEOUT
     try:
-        result = Alarm(deadline, strangers=STRANGERS).run(plan)
+        result = Interrupter(deadline, strangers=STRANGERS).run(plan)
         if not best:
             seconds = {"total": deadline.elapsed(), "timing": 0.0}
             return build_solution(problem, result, (), seed, "adaptive", seconds, recorder)

@@ -14,7 +14,7 @@ from tamp.geometric.samplers.choice import (
     Grounding,
     Registry,
     SamplerSpec,
-    maker,
+    factory,
     parse_choice,
 )
 from tamp.geometric.samplers.registry import SAMPLERS
@@ -86,7 +86,7 @@ class Served:
                 choices[relation] = SamplerSpec(USER_OBJECT, alone=False)
 
         made: dict[str, Grounding] = {
-            name: maker(name, choice, makers_of)() for name, choice in choices.items()
+            name: factory(name, choice, makers_of)() for name, choice in choices.items()
         }
         for relation, item in made.items():
             if not isinstance(item, Generator) and relation in SAMPLERS:

@@ -22,9 +22,9 @@ from tamp.symbolic.algorithms.bound_stream import STRANGERS
 from tamp.symbolic.algorithms.registry import ALGORITHMS
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
-AGAIN = 8
+MOST_TRIES = 8
 """Plans that are made at most until the classifiers bear one out."""
 
 
@@ -67,7 +67,7 @@ def solve(
         return result, with_trajectories(problem, result), planned
 
     try:
-        result, actions, planned = Alarm(deadline, strangers=STRANGERS).run(plan)
+        result, actions, planned = Interrupter(deadline, strangers=STRANGERS).run(plan)
     except (OutOfTime, KeyboardInterrupt) as end:
         # Before the first round, or while a bound plan was being timed.
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
@@ -101,7 +101,7 @@ def _borne_out(
     make_rng = random_streams(seed)
     result = ALGORITHMS[algorithm](task, make_rng, deadline, progress)
     wrong = contradictions(problem, result)
-    for again in range(1, AGAIN):
+    for again in range(1, MOST_TRIES):
         if not wrong or deadline.passed:
             break
         result = ALGORITHMS[algorithm](task, partial(_renamed, make_rng, again), deadline, progress)

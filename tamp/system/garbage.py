@@ -11,7 +11,7 @@ SELDOM = 50_000
 
 
 @contextmanager
-def seldom_collecting() -> Iterator[None]:
+def infrequent_collection() -> Iterator[None]:
     """Collect garbage seldom inside: planning makes many lists that last, and hardly a cycle
     (tests/test_memory.py).
     """

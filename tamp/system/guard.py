@@ -17,7 +17,7 @@ import time
 from types import FrameType
 from typing import Any, NoReturn
 
-from tamp.system.process_exit import leave
+from tamp.system.process_exit import exit_now
 from tamp.system.process_family import adopt_orphans, die_with, end_orphans, seconds_waited
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
@@ -169,7 +169,7 @@ def leave_as(code: int) -> NoReturn:
     _ASKED.at_once = True
     if _ASKED.number == signal.SIGTERM or (_ASKED.number and code):
         code = 128 + _ASKED.number
-    leave(code)
+    exit_now(code)
 
 
 def _code(command: Any) -> int:

@@ -20,16 +20,16 @@ from tamp.system.deadline import STANDSTILL, Deadline, OutOfTime, counted
 
 Result = TypeVar("Result")
 
-GRACE = 0.1
+GRACE_S = 0.1
 """Seconds after the deadline at which whatever still runs is interrupted."""
 
 SOONEST = 1e-4
 """The least that a timer is set to, seconds: none at all would never ring."""
 
-AGAIN = 0.25
+REPEAT_S = 0.25
 """Seconds until the next interruption, should the first one have been swallowed."""
 
-SOON = 0.005
+RETRY_S = 0.005
 """Seconds until the next try, when the first one met a frame in which nothing can be raised."""
 
 INTERRUPT_AGAIN = 0.1
@@ -55,7 +55,7 @@ def _look_away(frame: FrameType, event: str, argument: object) -> None:
     """Trace no new frames."""
 
 
-class Alarm:
+class Interrupter:
     """Raises OutOfTime in a computation shortly after the deadline, even inside a function that
     never returns; not when it is known already (`Deadline.ended`).
 
@@ -75,8 +75,8 @@ class Alarm:
     def __init__(
         self,
         deadline: Deadline,
-        grace: float = GRACE,
-        again: float = AGAIN,
+        grace: float = GRACE_S,
+        again: float = REPEAT_S,
         strangers: Collection[CodeType] = (),
     ) -> None:
         self._deadline = deadline
@@ -111,7 +111,9 @@ class Alarm:
 
         try:
             for number in mine:
-                before[number] = signal.signal(number, self._end if number in ends else self._ring)
+                before[number] = signal.signal(
+                    number, self._end if number in ends else self._raise_in_main_thread
+                )
             if timed:
                 self._set()
             return self._inside(work)
@@ -167,9 +169,9 @@ class Alarm:
         if self._deadline.ended:
             raise KeyboardInterrupt
         signal.setitimer(signal.ITIMER_VIRTUAL, INTERRUPT_AGAIN, INTERRUPT_AGAIN)
-        self._ring(signal.SIGVTALRM, frame)
+        self._raise_in_main_thread(signal.SIGVTALRM, frame)
 
-    def _ring(self, number: int, frame: FrameType | None) -> None:
+    def _raise_in_main_thread(self, number: int, frame: FrameType | None) -> None:
         """Handle the alarm: raise, if this is a place for it."""
         if self._deadline.ended or not self._is_inside(frame):
             return
@@ -182,7 +184,7 @@ class Alarm:
 
         if _swallows(frame):
             again = self._again if timed else INTERRUPT_AGAIN
-            signal.setitimer(signal.ITIMER_REAL if timed else signal.ITIMER_VIRTUAL, SOON, again)
+            signal.setitimer(signal.ITIMER_REAL if timed else signal.ITIMER_VIRTUAL, RETRY_S, again)
             return
 
         error = OutOfTime if timed else KeyboardInterrupt
@@ -191,7 +193,7 @@ class Alarm:
             if called:
                 sys.settrace(_look_away)
             for inner in called:
-                inner.f_trace = partial(self._insist, error)
+                inner.f_trace = partial(self._raise_again, error)
         self._swallowed = True
         raise error
 
@@ -207,7 +209,7 @@ class Alarm:
             frame = frame.f_back
         return []
 
-    def _insist(
+    def _raise_again(
         self, error: type[BaseException], frame: FrameType, event: str, argument: object
     ) -> Any:
         """Raise in the handler, too, that catches everything; Python then forgets this trace
@@ -215,4 +217,4 @@ class Alarm:
         """
         if event == "line" and self._inner is not None:
             raise error
-        return partial(self._insist, error)
+        return partial(self._raise_again, error)

@@ -209,12 +209,14 @@ def one_line_errors(parse: Callable[[], Options], program: str) -> Options:
     except SystemExit as end:
         if not end.code:  # --help
             raise
-        raise InputError(sentence(complaint.getvalue()), remedy=f"See {program} --help") from None
+        raise InputError(
+            tyro_message(complaint.getvalue()), remedy=f"See {program} --help"
+        ) from None
     except BrokenPipeError:
-        raise unread() from None
+        raise broken_pipe_exit() from None
 
 
-def unread() -> SystemExit:
+def broken_pipe_exit() -> SystemExit:
     """End a command whose help nobody reads to its end (`--help | head`); Python must not flush the
     rest.
     """
@@ -222,7 +224,7 @@ def unread() -> SystemExit:
     return SystemExit(0)
 
 
-def sentence(box: str) -> str:
+def tyro_message(box: str) -> str:
     """Find what tyro says in the first paragraph of its frame, in words of no programmer."""
     lines = [line.strip(" │|╭╮╰╯") for line in box.splitlines()]
     title, *said = [line for line in lines if line] or ["bad arguments"]

@@ -9,7 +9,7 @@ import sys
 from typing import NoReturn
 
 
-def leave(code: int) -> NoReturn:
+def exit_now(code: int) -> NoReturn:
     """End the process now, with what was printed and what others asked to be done at exit.
 
     Python would first take its objects and libraries to pieces one by one: 0.4 s after a plan of

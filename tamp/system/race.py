@@ -37,7 +37,7 @@ STEP = 1000
 
 
 @dataclass(frozen=True)
-class First(Generic[Answer]):
+class RaceResult(Generic[Answer]):
     """The answer that counts, and which run gave it."""
 
     run: int
@@ -55,7 +55,7 @@ def race(
     ends: Callable[[int, Answer], bool],
     deadline: Deadline,
     news: Callable[[int, Any], None] | None = None,
-) -> First[Answer] | None:
+) -> RaceResult[Answer] | None:
     """Start all runs, wait for the first answer that ends the race, and kill the others.
 
     The processes are forks: they know the problem already, and only answers travel. They leave with
@@ -115,7 +115,7 @@ def race(
                 if kind == "wrong":
                     raise content
                 if ends(number, content):
-                    return First(number, content)
+                    return RaceResult(number, content)
                 answers[number] = content
 
     finally:
@@ -129,7 +129,7 @@ def race(
 
     if answers:
         number = min(answers)
-        return First(number, answers[number])
+        return RaceResult(number, answers[number])
     if not open_:
         raise ChildProcessError(f"all {len(runs)} runs broke down; their messages stand above")
     return None

@@ -61,7 +61,7 @@ def predicates(formula: Formula) -> set[str]:
     return predicates(formula.body)
 
 
-def ground(atom: Atom, binding: Mapping[str, str]) -> Fact:
+def substituted(atom: Atom, binding: Mapping[str, str]) -> Fact:
     """Ground an atom: the fact that it is under a binding of its variables."""
     return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
 

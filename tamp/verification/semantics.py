@@ -18,7 +18,15 @@ from tamp.symbolic.pddl.structs import (
     Or,
     Parameter,
 )
-from tamp.verification.formulas import Binding, flat, free, ground, predicates, substitute, unify
+from tamp.verification.formulas import (
+    Binding,
+    flat,
+    free,
+    predicates,
+    substitute,
+    substituted,
+    unify,
+)
 
 Types = Mapping[str, tuple[str, ...]]
 
@@ -98,7 +106,7 @@ class Semantics:
             start = {name: value for name, value in binding.items() if name not in types}
             for found in self._solutions([effect.condition], state, start, types):
                 for full in self._every(types, found):
-                    (added if effect.adds else deleted).add(ground(effect.atom, full))
+                    (added if effect.adds else deleted).add(substituted(effect.atom, full))
         after = dict(state.facts)
         gone, come = State.of(deleted).facts, State.of(added).facts
         for name in gone.keys() | come.keys():
@@ -148,7 +156,7 @@ class Semantics:
 
     def _true(self, part: Formula, state: State, binding: Binding) -> bool:
         if isinstance(part, Atom):
-            return self._true_fact(ground(part, binding), state)
+            return self._true_fact(substituted(part, binding), state)
         if isinstance(part, Not):
             return not self.holds(part.body, state, binding)
         if isinstance(part, Or):

@@ -17,7 +17,7 @@ from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Task
 from tamp.system.json_fields import Field, clipped
 from tamp.system.reading import is_file, read_json
-from tamp.verification.formulas import flat, ground
+from tamp.verification.formulas import flat, substituted
 from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics, State
 
@@ -143,7 +143,7 @@ def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
         return float(action.cost)
     binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
     costs: Mapping[Fact, float] = task.costs
-    return costs.get(ground(action.cost, binding))
+    return costs.get(substituted(action.cost, binding))
 
 
 def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path:

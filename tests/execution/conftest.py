@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tamp.plan.open import Stored, open_plan
+from tamp.plan.open import PlanBundle, open_plan
 from tamp.plan.write import write_plan
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
@@ -33,5 +33,5 @@ def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def stored(plan_file: Path) -> Stored:
+def stored(plan_file: Path) -> PlanBundle:
     return open_plan(plan_file)

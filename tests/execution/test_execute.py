@@ -14,7 +14,7 @@ from tamp.execution.execute import execute
 from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Execution
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 
 
 class Sceptic:
@@ -28,7 +28,7 @@ class Sceptic:
         return 0.25
 
 
-def mended(stored: Stored, disturbance: str, seed: int = 0) -> Execution:
+def mended(stored: PlanBundle, disturbance: str, seed: int = 0) -> Execution:
     replanner = Replanner(stored, max_time=20.0)
     return execute(
         stored, ExecutionOptions(replanner=replanner, disturbance=disturbance, seed=seed)
@@ -36,7 +36,7 @@ def mended(stored: Stored, disturbance: str, seed: int = 0) -> Execution:
 
 
 @pytest.mark.parametrize("grasp", ["friction", "constraint"])
-def test_a_plan_reaches_its_goal(stored: Stored, grasp: str) -> None:
+def test_a_plan_reaches_its_goal(stored: PlanBundle, grasp: str) -> None:
     sceptic = Sceptic()
     done = execute(stored, ExecutionOptions(grasp=grasp, classifiers={"on": ("sceptic", sceptic)}))
     assert done.reached and not done.explanation
@@ -54,14 +54,14 @@ def test_a_plan_reaches_its_goal(stored: Stored, grasp: str) -> None:
     assert "Goal reached" in done.text() and done.json()["reached"] is True
 
 
-def test_the_same_seed_gives_the_same_run(stored: Stored) -> None:
+def test_the_same_seed_gives_the_same_run(stored: PlanBundle) -> None:
     assert mended(stored, "object-dropped", 3) == mended(stored, "object-dropped", 3)
 
 
 @pytest.mark.parametrize(
     "name", ["object-moved", "object-dropped", "grasp-slips", "surface-blocked"]
 )
-def test_a_disturbed_plan_is_mended(stored: Stored, name: str) -> None:
+def test_a_disturbed_plan_is_mended(stored: PlanBundle, name: str) -> None:
     done = mended(stored, name, seed=1)
     assert done.disturbance
     assert sum(action.event is not None for action in done.actions) == 1
@@ -70,7 +70,7 @@ def test_a_disturbed_plan_is_mended(stored: Stored, name: str) -> None:
     assert done.reached, done.text()
 
 
-def test_what_is_dropped_is_lost_without_a_new_plan(stored: Stored) -> None:
+def test_what_is_dropped_is_lost_without_a_new_plan(stored: PlanBundle) -> None:
     done = execute(stored, ExecutionOptions(disturbance="object-dropped"))
     assert not done.reached and done.replans == 0
     assert "lost" in done.kinds
@@ -79,7 +79,7 @@ def test_what_is_dropped_is_lost_without_a_new_plan(stored: Stored) -> None:
     assert "Goal not reached" in done.text()
 
 
-def removes(stored: Stored, seed: int) -> tuple[int, int]:
+def removes(stored: PlanBundle, seed: int) -> tuple[int, int]:
     """During which action, and which of the two bodies is taken away with a seed."""
     rng = np.random.default_rng(seed)
     scheduled = schedule("object-removed", stored.plan, rng)
@@ -87,7 +87,7 @@ def removes(stored: Stored, seed: int) -> tuple[int, int]:
     return scheduled.action, int(rng.integers(2))
 
 
-def test_a_body_that_is_gone_is_missed_when_the_goal_needs_it(stored: Stored) -> None:
+def test_a_body_that_is_gone_is_missed_when_the_goal_needs_it(stored: PlanBundle) -> None:
     """The block is of no use; the can is."""
     runs = {}
     for choice in (0, 1):
@@ -104,7 +104,7 @@ def test_a_body_that_is_gone_is_missed_when_the_goal_needs_it(stored: Stored) ->
     assert gone.goal[0].why == "it is gone"
 
 
-def test_a_disturbance_needs_a_moment(stored: Stored) -> None:
+def test_a_disturbance_needs_a_moment(stored: PlanBundle) -> None:
     empty = replace(stored.plan, actions=())
     for name in DISTURBANCES:
         assert schedule(name, empty, np.random.default_rng(0)) is None
@@ -113,7 +113,7 @@ def test_a_disturbance_needs_a_moment(stored: Stored) -> None:
             assert scheduled is not None and 0 <= scheduled.action < len(stored.plan.actions)
 
 
-def test_unknown_names_are_refused(stored: Stored) -> None:
+def test_unknown_names_are_refused(stored: PlanBundle) -> None:
     with pytest.raises(InputError, match=r"unknown disturbance 'object-eaten'.*object-moved"):
         execute(stored, ExecutionOptions(disturbance="object-eaten"))
     with pytest.raises(InputError, match=r"unknown grasp 'magnet'.*friction"):

@@ -8,7 +8,7 @@ import pytest
 from tamp.execution.observation import Observer
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 
 
 def raised(T: Array, x: float = 0.0, z: float = 0.0) -> Array:
@@ -18,7 +18,7 @@ def raised(T: Array, x: float = 0.0, z: float = 0.0) -> Array:
     return T
 
 
-def test_bodies_are_seen_where_they_are(stored: Stored) -> None:
+def test_bodies_are_seen_where_they_are(stored: PlanBundle) -> None:
     scene = stored.loaded.scene
     poses = {name: scene.bodies[name].pose.matrix for name in scene.movable}
     base = np.array([0.1, 0.2, 0.3])

@@ -18,7 +18,7 @@ from tamp.execution.goal import judged
 from tamp.execution.observation import ObservedScene, Observer
 from tamp.execution.relations import own_relations
 from tamp.geometric.samplers.python_file import python_grounding
-from tamp.plan.open import Stored, open_plan
+from tamp.plan.open import PlanBundle, open_plan
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tests.own import PYTHON, SAMPLED, write_domain, write_problem
 
@@ -80,7 +80,7 @@ def test_what_holds_is_on_trust_without_one(
     assert "(upright tea table) holds   upright.py says 1.00" in said
 
 
-def seen(stored: Stored, poses: dict[str, np.ndarray]) -> ObservedScene:
+def seen(stored: PlanBundle, poses: dict[str, np.ndarray]) -> ObservedScene:
     scene = stored.loaded.scene
     there = {name: poses.get(name, scene.bodies[name].pose.matrix) for name in scene.movable}
     with Observer(scene) as observer:

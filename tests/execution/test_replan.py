@@ -14,7 +14,7 @@ from tamp.execution.replan import Replanner
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
-from tamp.plan.open import Stored
+from tamp.plan.open import PlanBundle
 from tamp.plan.read import Hold
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
@@ -23,7 +23,7 @@ from tamp.symbolic.pddl.structs import Atom, Exists, Formula, Not, Parameter
 from tamp.system.files import find_domain
 
 
-def expectation(stored: Stored) -> Expected:
+def expectation(stored: PlanBundle) -> Expected:
     file = find_domain("cupboard")
     return Expected(
         stored.plan, parse_domain(file.read_text(encoding="utf-8"), file), stored.loaded.scene
@@ -40,12 +40,12 @@ def moved(scene: Scene, name: str, x: float, y: float) -> Scene:
     return replace(scene, bodies=MappingProxyType({**scene.bodies, name: replace(body, pose=pose)}))
 
 
-def held(stored: Stored) -> Grasp:
+def held(stored: PlanBundle) -> Grasp:
     hold = next(value.data for value in stored.plan.values.values() if isinstance(value.data, Hold))
     return Grasp("Can", Pose.from_matrix(hold.T_tool_body), hold.opening)
 
 
-def test_what_is_in_the_hand_is_not_picked_again(stored: Stored) -> None:
+def test_what_is_in_the_hand_is_not_picked_again(stored: PlanBundle) -> None:
     problem = load_problem(stored.loaded.path, holding=held(stored), scene=stored.loaded.scene)
     facts = problem.stream_task.task.initial
     assert ("hand-empty",) not in facts and ("holding", "can", "can_held") in facts
@@ -62,7 +62,7 @@ def test_what_is_in_the_hand_is_not_picked_again(stored: Stored) -> None:
     ids=["out of the way", "where the hand closes", "elsewhere"],
 )
 def test_the_rest_is_kept_when_it_still_holds(
-    stored: Stored, name: str, x: float, y: float, keeps: bool
+    stored: PlanBundle, name: str, x: float, y: float, keeps: bool
 ) -> None:
     expected = expectation(stored)
     scene = moved(stored.loaded.scene, name, x, y)
@@ -77,7 +77,7 @@ def test_the_rest_is_kept_when_it_still_holds(
         assert mended.plan.actions[-1].name == "place"
 
 
-def test_a_body_where_another_one_should_go_is_in_the_way(stored: Stored) -> None:
+def test_a_body_where_another_one_should_go_is_in_the_way(stored: PlanBundle) -> None:
     expected, scene = expectation(stored), stored.loaded.scene
     for action in stored.plan.actions:
         expected.apply(action)
@@ -97,7 +97,7 @@ def test_a_body_where_another_one_should_go_is_in_the_way(stored: Stored) -> Non
     assert not mended.keeps and mended.plan is not None, mended.explanation
 
 
-def gone(stored: Stored, name: str, goal: Formula) -> tuple[str, ...]:
+def gone(stored: PlanBundle, name: str, goal: Formula) -> tuple[str, ...]:
     """What is said when a body has gone."""
     scene = stored.loaded.scene
     bodies = {other: body for other, body in scene.bodies.items() if other != name}
@@ -112,7 +112,7 @@ def gone(stored: Stored, name: str, goal: Formula) -> tuple[str, ...]:
     )  # fmt: skip
 
 
-def test_what_the_goal_names_and_is_gone_is_missed(stored: Stored) -> None:
+def test_what_the_goal_names_and_is_gone_is_missed(stored: PlanBundle) -> None:
     """The goal as a formula says what it names; a predicate may be called like a body."""
     missed = ("Can is gone, and the goal needs it",)
     assert gone(stored, "Can", GOAL) == missed
@@ -120,7 +120,7 @@ def test_what_the_goal_names_and_is_gone_is_missed(stored: Stored) -> None:
     assert gone(stored, "Can", Atom("can", ("block",))) != missed
 
 
-def test_what_is_accepted_is_expected_until_the_plan_moves_it(stored: Stored) -> None:
+def test_what_is_accepted_is_expected_until_the_plan_moves_it(stored: PlanBundle) -> None:
     expected = expectation(stored)
     elsewhere = Pose((1.0, 2.0, 3.0)).matrix
     expected.accept({"Can": elsewhere})

@@ -11,7 +11,7 @@ import pytest
 
 from tamp.system import interrupts as alarm
 from tamp.system.deadline import STANDSTILL, Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 
 def compute(seconds: float) -> None:
@@ -41,7 +41,7 @@ def finalised() -> None:
 
 def nested() -> None:
     """A signal that is dropped under an inner alarm."""
-    Alarm(Deadline(15.0)).run(lambda: dropped(signal.SIGINT))
+    Interrupter(Deadline(15.0)).run(lambda: dropped(signal.SIGINT))
 
 
 @pytest.mark.parametrize("limit", [20.0, float("inf")])
@@ -51,7 +51,7 @@ def test_an_interrupt_that_was_dropped_comes_again(
 ) -> None:
     monkeypatch.setattr(alarm, "INTERRUPT_AGAIN", 0.05)
     with pytest.raises(KeyboardInterrupt):
-        Alarm(Deadline(limit)).run(work)
+        Interrupter(Deadline(limit)).run(work)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     compute(0.2)  # and not once more after the block
 
@@ -60,7 +60,7 @@ def test_a_handler_of_the_users_is_left_alone() -> None:
     calls: list[int] = []
     before = signal.signal(signal.SIGINT, lambda number, frame: calls.append(number))
     try:
-        Alarm(Deadline(20.0)).run(lambda: signal.raise_signal(signal.SIGINT))
+        Interrupter(Deadline(20.0)).run(lambda: signal.raise_signal(signal.SIGINT))
         assert calls == [signal.SIGINT]
     finally:
         signal.signal(signal.SIGINT, before)
@@ -68,7 +68,7 @@ def test_a_handler_of_the_users_is_left_alone() -> None:
 
 def test_the_deadline_rings_again_when_the_first_ring_was_dropped() -> None:
     with pytest.raises(OutOfTime):
-        Alarm(Deadline(0.0), grace=0.0, again=0.05).run(lambda: dropped(signal.SIGALRM))
+        Interrupter(Deadline(0.0), grace=0.0, again=0.05).run(lambda: dropped(signal.SIGALRM))
 
 
 def test_who_knows_of_the_end_may_say_what_was_found() -> None:
@@ -81,9 +81,9 @@ def test_who_knows_of_the_end_may_say_what_was_found() -> None:
         compute(0.2)
         return "found"
 
-    assert Alarm(deadline, grace=0.0, again=0.02).run(work) == "found"
+    assert Interrupter(deadline, grace=0.0, again=0.02).run(work) == "found"
     with pytest.raises(KeyboardInterrupt):
-        Alarm(deadline).run(
+        Interrupter(deadline).run(
             lambda: signal.raise_signal(signal.SIGINT)
         )  # but the user is always heard
 
@@ -92,19 +92,19 @@ def test_nothing_rings_on_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
     """What the computation leaves may take longer to free than the alarm waits before it rings again."""
 
     freed: list[int] = []
-    inside = Alarm._inside
+    inside = Interrupter._inside
 
-    def slow_to_leave(self: Alarm, work: Callable[[], object]) -> object:
+    def slow_to_leave(self: Interrupter, work: Callable[[], object]) -> object:
         try:
             return inside(self, work)
         finally:
             compute(0.2)  # many rings
             freed.append(1)
 
-    monkeypatch.setattr(Alarm, "_inside", slow_to_leave)
+    monkeypatch.setattr(Interrupter, "_inside", slow_to_leave)
     for _ in range(3):
         with pytest.raises(OutOfTime):
-            Alarm(Deadline(0.0), grace=0.0, again=0.001).run(lambda: compute(10.0))
+            Interrupter(Deadline(0.0), grace=0.0, again=0.001).run(lambda: compute(10.0))
     assert len(freed) == 3
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
 
@@ -112,16 +112,16 @@ def test_nothing_rings_on_the_way_out(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_signal_on_the_way_out_is_heard_when_all_is_in_order(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    inside = Alarm._inside
+    inside = Interrupter._inside
 
-    def asked_while_leaving(self: Alarm, work: Callable[[], object]) -> object:
+    def asked_while_leaving(self: Interrupter, work: Callable[[], object]) -> object:
         result = inside(self, work)
         signal.raise_signal(signal.SIGINT)
         return result
 
-    monkeypatch.setattr(Alarm, "_inside", asked_while_leaving)
+    monkeypatch.setattr(Interrupter, "_inside", asked_while_leaving)
     with pytest.raises(KeyboardInterrupt):
-        Alarm(Deadline(60.0)).run(lambda: None)
+        Interrupter(Deadline(60.0)).run(lambda: None)
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
@@ -136,4 +136,4 @@ def test_the_alarm_waits_while_kernels_are_compiled() -> None:
         STANDSTILL.end()
         return deadline.elapsed()
 
-    assert Alarm(deadline, grace=0.0, again=0.02).run(work) < 0.1
+    assert Interrupter(deadline, grace=0.0, again=0.02).run(work) < 0.1

@@ -19,7 +19,7 @@ from tamp.planner.parallel import solve_parallel
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
 from tamp.system.deadline import Deadline
-from tamp.system.race import STEP, First, Tell, member_seed, race
+from tamp.system.race import STEP, RaceResult, Tell, member_seed, race
 
 Run = Callable[[Tell], Any]
 
@@ -66,13 +66,13 @@ def test_the_first_answer_that_ends_it_counts_and_the_others_leave() -> None:
     told: dict[int, int] = {}
     runs = [endless, answering("no"), answering("yes")]
     found = race(runs, lambda n, answer: answer == "yes", Deadline(60), told.__setitem__)
-    assert found == First(2, "yes")
+    assert found == RaceResult(2, "yes")
     assert told and all(gone(pid) for pid in told.values())
 
 
 def test_without_an_ending_answer_the_first_runs_counts() -> None:
     runs = [answering("a"), answering("b")]
-    assert race(runs, lambda n, answer: False, Deadline(60)) == First(0, "a")
+    assert race(runs, lambda n, answer: False, Deadline(60)) == RaceResult(0, "a")
 
 
 def test_a_run_that_never_ends_is_killed_when_the_time_is_up() -> None:
@@ -82,7 +82,7 @@ def test_a_run_that_never_ends_is_killed_when_the_time_is_up() -> None:
 
 
 def test_a_broken_run_does_not_matter_unless_all_are() -> None:
-    assert race([broken, answering(1)], always, Deadline(60)) == First(1, 1)
+    assert race([broken, answering(1)], always, Deadline(60)) == RaceResult(1, 1)
     with pytest.raises(ChildProcessError):
         race([broken, broken], always, Deadline(60))
 

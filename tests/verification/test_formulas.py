@@ -10,9 +10,9 @@ from tamp.verification.formulas import (
     facts,
     flat,
     free,
-    ground,
     predicates,
     substitute,
+    substituted,
     unify,
 )
 
@@ -80,7 +80,11 @@ def test_facts_of_a_formula_are_its_atoms_without_variables() -> None:
 
 
 def test_an_atom_is_ground_by_what_is_bound() -> None:
-    assert ground(Atom("on", ("?x", "table")), {"?x": "cup", "?y": "no"}) == ("on", "cup", "table")
+    assert substituted(Atom("on", ("?x", "table")), {"?x": "cup", "?y": "no"}) == (
+        "on",
+        "cup",
+        "table",
+    )
 
 
 @pytest.mark.parametrize(

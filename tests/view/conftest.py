@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from tamp.plan.open import Stored, open_plan
+from tamp.plan.open import PlanBundle, open_plan
 from tamp.view.document import page_document
 from tamp.view.samples import sample_markers
 from tamp.view.story import planning_summary
@@ -17,17 +17,17 @@ collect_ignore = [] if program() else ["test_in_browser.py"]
 
 
 @pytest.fixture(scope="session")
-def stored(stored_plan: Path) -> Stored:
+def stored(stored_plan: Path) -> PlanBundle:
     return open_plan(stored_plan)
 
 
 @pytest.fixture(scope="session")
-def timeline(stored: Stored) -> Timeline:
+def timeline(stored: PlanBundle) -> Timeline:
     return timeline_of(stored.loaded.scene, stored.robot, stored.plan)
 
 
 @pytest.fixture(scope="session")
-def document(stored: Stored, timeline: Timeline) -> dict[str, Any]:
+def document(stored: PlanBundle, timeline: Timeline) -> dict[str, Any]:
     return page_document(
         timeline, planning_summary(stored.document), sample_markers(stored.document, timeline.scene)
     )

@@ -9,13 +9,13 @@ import pytest
 
 from tamp import load_problem, solve
 from tamp.geometric.robot.kinematics import Kinematics
-from tamp.plan.open import Stored, open_plan
+from tamp.plan.open import PlanBundle, open_plan
 from tamp.plan.write import write_plan
 from tamp.simulation.engines import open_world
 from tamp.view.timeline import PoseInterval, Timeline, holding, timeline_of, tool_path
 
 
-def test_actions_and_objects_are_the_plans(timeline: Timeline, stored: Stored) -> None:
+def test_actions_and_objects_are_the_plans(timeline: Timeline, stored: PlanBundle) -> None:
     assert [action.name for action in timeline.actions] == ["move", "pick", "move", "place"]
     assert timeline.actions[1].objects == ("soup_can",)
     assert (
@@ -38,7 +38,7 @@ def test_the_robot_moves_without_jumps_and_stands_before_and_after(timeline: Tim
 
 
 def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(
-    timeline: Timeline, stored: Stored
+    timeline: Timeline, stored: PlanBundle
 ) -> None:
     kinematics = Kinematics(timeline.robot)
     kept, held, left = timeline.stays["soup_can"]

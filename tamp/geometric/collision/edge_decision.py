@@ -19,7 +19,7 @@ from tamp.geometric.collision.kernels import (
     TASKS,
     UNDECIDED,
     check,
-    demand,
+    required_clearance,
     spheres_apart,
 )
 from tamp.geometric.collision.placing import place_frames, place_part
@@ -74,7 +74,14 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
         box[n, r], box[n, 3 + r] = math.inf, -math.inf
 
     for i in range(n):
-        _box(i, demand(i, np.int64(FLOOR), half, padding, parts, reach), parts, placed, reach, box)
+        _box(
+            i,
+            required_clearance(i, np.int64(FLOOR), half, padding, parts, reach),
+            parts,
+            placed,
+            reach,
+            box,
+        )
         for r in range(3):
             box[n, r], box[n, 3 + r] = min(box[n, r], box[i, r]), max(box[n, 3 + r], box[i, 3 + r])
         if box[i, 2] < 0.0 and parts[i, ON_FLOOR] == 0.0:
@@ -83,7 +90,9 @@ def _candidates(half, padding, parts, pairs, obstacles, placed, reach, box, foun
 
     for p in range(pairs.shape[0]):
         i, k = int(pairs[p, 0]), int(pairs[p, 1])
-        if not spheres_apart(i, k, demand(i, SELF - k, half, padding, parts, reach), parts, reach):
+        if not spheres_apart(
+            i, k, required_clearance(i, SELF - k, half, padding, parts, reach), parts, reach
+        ):
             found[count, 0], found[count, 1] = i, SELF - k
             count += 1
 
@@ -163,7 +172,7 @@ def _decide_pairs(
                     place_part(p, frames, change, joints, parts, part_poses, placed, reach)
                     ready[p] = head
 
-        far = demand(i, other, half, padding, parts, reach)
+        far = required_clearance(i, other, half, padding, parts, reach)
         answer = check(
             i, other, padding, far, parts, placed, reach, obstacles, obstacle_poses,
             vertices, leaves, guess, s, weights,

@@ -239,7 +239,7 @@ def check(
 
 
 @njit(**INLINE)
-def demand(i, other, half, padding, parts, reach):
+def required_clearance(i, other, half, padding, parts, reach):
     """Return the distance that (i, other) needs amid an interval of half length `half`."""
     if other <= SELF:
         k = SELF - other

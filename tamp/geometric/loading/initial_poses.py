@@ -53,10 +53,10 @@ def place_bodies(drafts: Mapping[str, UnplacedBody]) -> tuple[dict[str, Body], t
         InputError: An unknown support, one outside of its support, bodies that stand on each other
             in a circle.
     """
-    return _Placing(drafts).run()
+    return _InitialPoses(drafts).run()
 
 
-class _Placing:
+class _InitialPoses:
     def __init__(self, drafts: Mapping[str, UnplacedBody]) -> None:
         self.drafts = drafts
         self.owners = {

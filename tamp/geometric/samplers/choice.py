@@ -115,7 +115,7 @@ def sampler_files(samplers: Iterable[str]) -> list[Path]:
     return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
-def maker(relation: str, choice: SamplerSpec, registry: Registry) -> Callable[[], Grounding]:
+def factory(relation: str, choice: SamplerSpec, registry: Registry) -> Callable[[], Grounding]:
     """Return what makes the chosen sampler; it may raise InputError."""
     if choice.name in registry.get(relation, {}):
         return registry[relation][choice.name]

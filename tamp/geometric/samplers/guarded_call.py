@@ -18,7 +18,7 @@ from tamp.geometric.scene.scene import Body, Room, Scene
 from tamp.geometric.stability.placement import Placement
 from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 MAX_DISTANCE_M = 1000.0
 """Metres from the room beyond which a position is taken for a mistake."""
@@ -56,7 +56,7 @@ def propose_safely(
     try:
         if math.isinf(seconds):  # the alarm of the run will do
             return _proposed(generator, scene, arguments, count, rng)
-        alarm = Alarm(limit, grace=0.0, again=0.02, strangers=FOREIGN_CODE)
+        alarm = Interrupter(limit, grace=0.0, again=0.02, strangers=FOREIGN_CODE)
         return alarm.run(lambda: _proposed(generator, scene, arguments, count, rng))
     except OutOfTime:
         if deadline.passed:

@@ -16,7 +16,7 @@ from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.search import Plan, Reason, search
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 LADDER = (
     ("wastar", "ff+landmarks", 5.0),
@@ -93,7 +93,7 @@ def optimize_symbolic(
                     break
 
     with contextlib.suppress(OutOfTime, KeyboardInterrupt):
-        Alarm(deadline).run(improve)
+        Interrupter(deadline).run(improve)
     optimal = math.isclose(best.bound, best.cost, rel_tol=1e-9, abs_tol=1e-9)
     return replace(best, optimal=optimal, seconds={**best.seconds, "total": deadline.elapsed()})
 

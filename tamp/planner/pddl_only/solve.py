@@ -19,7 +19,7 @@ from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
 from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 
 SEARCH = "greedy"
 """The search when none is named."""
@@ -144,7 +144,7 @@ def solve_symbolic(
     search, heuristic = choose(search, heuristic)
     deadline = Deadline(max_time)
     try:
-        return Alarm(deadline).run(lambda: _solve(problem, search, heuristic, deadline, seed))
+        return Interrupter(deadline).run(lambda: _solve(problem, search, heuristic, deadline, seed))
     except (OutOfTime, KeyboardInterrupt) as end:
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED
         return SymbolicSolution(

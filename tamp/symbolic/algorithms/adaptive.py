@@ -46,7 +46,7 @@ from tamp.symbolic.algorithms.planning_run import (
 from tamp.symbolic.algorithms.planning_task import prepare
 from tamp.symbolic.algorithms.result import Progress, Result, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.garbage import seldom_collecting
+from tamp.system.garbage import infrequent_collection
 
 FIRST_TRIES = 4
 """Draws a visit of a stream call in a skeleton's first round, one more in each later one: a bad
@@ -109,7 +109,7 @@ def start_adaptive(
     return start_run(prepare(problem), knowledge, optimistic_task, make_rng, deadline, progress)
 
 
-@seldom_collecting()
+@infrequent_collection()
 def plan_adaptively(run: Run) -> Result:
     """Alternate search and binding until a plan is bound, nothing is left, or time is up."""
     escalation = Escalation()

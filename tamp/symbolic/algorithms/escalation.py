@@ -83,7 +83,7 @@ def escalate(run: Run, escalation: Escalation, drew: bool) -> Result | None:
     if _keeps_failing(run, escalation.failures):
         draws = DRAWS_PER_FAILURE * escalation.failures
         escalation.failures *= 2
-    elif escalation.dry_rounds == 0 and _wanders(run, escalation.wandering_rounds):
+    elif escalation.dry_rounds == 0 and _draws_little(run, escalation.wandering_rounds):
         draws = 10 * FEW_DRAWS_PER_ROUND * escalation.wandering_rounds
         escalation.wandering_rounds *= 2
 
@@ -143,7 +143,7 @@ def _second_opinion(run: Run, draws: int) -> Result:
         run.effort.apart_seconds += time.perf_counter() - began
 
 
-def _wanders(run: Run, rounds: int) -> bool:
+def _draws_little(run: Run, rounds: int) -> bool:
     """Check that so many rounds went from plan to plan in a large task and drew little."""
     few = run.binder.draws < FEW_DRAWS_PER_ROUND * rounds
     many = len(run.optimistic.instantiated.operators) >= MANY_OPERATORS

@@ -35,7 +35,7 @@ from tamp.symbolic.algorithms.priced_search import exclude_each_other
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, StreamTask
 from tamp.symbolic.search.instantiation.instantiator import Instantiator
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.garbage import seldom_collecting
+from tamp.system.garbage import infrequent_collection
 
 DRAWS_PER_LEVEL = 2
 """Values drawn from each generator instance a level."""
@@ -86,7 +86,7 @@ def start_incremental(
     return run
 
 
-@seldom_collecting()
+@infrequent_collection()
 def plan_incrementally(run: Run, most: int | None = None) -> Result:
     """Sample a level, search and bind what is left, until a plan is found or nothing is new.
 

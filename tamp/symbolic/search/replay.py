@@ -27,8 +27,8 @@ from tamp.symbolic.search.replay_formulas import (
     Binding,
     conjunct_atoms,
     formula_words,
-    ground,
     guard_atoms,
+    substituted,
 )
 
 REFUTED = (
@@ -146,7 +146,7 @@ class _World:
         """Check that a condition holds."""
         match formula:
             case Atom():
-                return self._fact(ground(formula, binding))
+                return self._fact(substituted(formula, binding))
             case Not(body):
                 return not self.holds(body, binding)
             case And(parts):
@@ -289,5 +289,5 @@ class _World:
                 effect.parameters, self._where(effect.condition, True), binding
             ):
                 if self.holds(effect.condition, full):
-                    changed.add(ground(effect.atom, full))
+                    changed.add(substituted(effect.atom, full))
         return (state - deleted) | added

@@ -12,7 +12,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula,
 Binding = Mapping[str, str]
 
 
-def ground(atom: Atom, binding: Binding) -> Fact:
+def substituted(atom: Atom, binding: Binding) -> Fact:
     """Return the fact of an atom under a binding."""
     return (atom.predicate, *(binding.get(term, term) for term in atom.terms))
 
@@ -46,7 +46,7 @@ def formula_words(formula: Formula, binding: Binding) -> str:
     """Write a formula under a binding as PDDL."""
     match formula:
         case Atom():
-            return f"({' '.join(ground(formula, binding))})"
+            return f"({' '.join(substituted(formula, binding))})"
         case Not(body):
             return f"(not {formula_words(body, binding)})"
         case And(parts) | Or(parts):

@@ -12,7 +12,7 @@ from numba import njit
 from tamp.geometric.collision.collisions import Collisions
 from tamp.geometric.collision.edge_check import geometry_of
 from tamp.geometric.collision.edge_decision import scratch
-from tamp.geometric.collision.kernels import demand
+from tamp.geometric.collision.kernels import required_clearance
 from tamp.geometric.collision.placing import place_frames, place_part
 from tamp.geometric.collision.tables import CENTRE, RADIUS
 from tamp.geometric.loading.load import load_scene
@@ -40,7 +40,7 @@ def _looked_at(conf, change, half, packed):
     needed = np.empty(len(parts))
     for i in range(len(parts)):
         place_part(i, frames, change, joints, parts, part_poses, placed, reach)
-        needed[i] = demand(i, 0, half, 0.0, parts, reach)
+        needed[i] = required_clearance(i, 0, half, 0.0, parts, reach)
     return placed, needed
 
 

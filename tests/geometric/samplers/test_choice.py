@@ -11,8 +11,8 @@ from tamp.errors import InputError
 from tamp.geometric.samplers.choice import (
     ANY_RELATION,
     SamplerSpec,
+    factory,
     make_mixture,
-    maker,
     parse_choice,
     sampler_choices,
     sampler_files,
@@ -80,8 +80,8 @@ def test_a_file_serves_any_relation_by_its_whole_path(tmp_path: Path) -> None:
 
 
 def test_who_makes_it() -> None:
-    assert isinstance(maker("on", SamplerSpec("surface", True), KNOWN)(), SurfacePlacements)
-    made = maker("upright", SamplerSpec("/w.npz", False), KNOWN)()
+    assert isinstance(factory("on", SamplerSpec("surface", True), KNOWN)(), SurfacePlacements)
+    made = factory("upright", SamplerSpec("/w.npz", False), KNOWN)()
     assert made.made_of == ("upright", Path("/w.npz"))  # type: ignore[union-attr]
 
 

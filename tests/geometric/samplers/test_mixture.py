@@ -203,13 +203,13 @@ def test_the_clock_does_not_see_a_quick_generator() -> None:
 
 def test_an_alarm_within_an_alarm_goes_on() -> None:
     from tamp.system.deadline import Deadline, OutOfTime
-    from tamp.system.interrupts import Alarm
+    from tamp.system.interrupts import Interrupter
 
     def inner() -> None:
         for _ in range(200):
-            Alarm(Deadline(10.0), grace=0.0).run(lambda: time.sleep(0.01))
+            Interrupter(Deadline(10.0), grace=0.0).run(lambda: time.sleep(0.01))
 
     started = time.monotonic()
     with pytest.raises(OutOfTime):
-        Alarm(Deadline(0.3), grace=0.0).run(inner)
+        Interrupter(Deadline(0.3), grace=0.0).run(inner)
     assert time.monotonic() - started > 0.29

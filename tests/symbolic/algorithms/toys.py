@@ -20,7 +20,7 @@ from tamp.symbolic.pddl.parser import (
 from tamp.symbolic.pddl.relations import SAMPLE
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
-from tamp.system.interrupts import Alarm
+from tamp.system.interrupts import Interrupter
 from tests.symbolic.search.interpreter import Interpreter
 
 ALGORITHMS = {"adaptive": solve_adaptive, "incremental": solve_incremental}
@@ -64,7 +64,7 @@ def solve(algorithm: str, problem: StreamTask, *, seconds: float = 8.0, seed: in
     """Run an algorithm as the api does: under an alarm, every stream call with a generator of its own."""
     deadline = Deadline(seconds)
     try:
-        return Alarm(deadline, strangers=STRANGERS).run(
+        return Interrupter(deadline, strangers=STRANGERS).run(
             lambda: ALGORITHMS[algorithm](
                 problem, lambda key: random.Random(f"{seed} {key}"), deadline, lambda effort: None
             )
