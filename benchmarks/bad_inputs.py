@@ -220,6 +220,7 @@ def judge(
     changed = [name for name, content in before.items() if after.get(name, b"gone") != content]
     kept = {words[at + 1] for at, word in enumerate(words[:-1]) if word in ("--out", "--statistics")}
     kept |= {"plan.json"} if words[0] == "tamp-solve" and "--out" not in words else set()  # where a plan goes
+    kept |= {f"{name[:-4]}.json" for name in kept if name.endswith(".npz")}  # the card of a data set
     # the plan that was found is written first, whatever becomes of the other outputs
     if set(changed) - (kept if ended.code != 2 or "/dev/full" in words else set()):
         faults.append(f"changed: {changed}")

@@ -249,8 +249,8 @@ def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
 def _refuse(name: str, wrong: NDArray[np.bool_], what: str) -> None:
     """Raise an error that names the first entry that is wrong."""
     if wrong.any():
-        row, *rest = (int(index) for index in np.argwhere(wrong)[0])
-        where = f"row {row}" + (f", entry {', '.join(map(str, rest))}" if rest else "")
+        row, *others = (int(index) for index in np.argwhere(wrong)[0])
+        where = f"row {row}" + (f", entry {', '.join(map(str, others))}" if others else "")
         raise InputError(f"array '{name}', {where}: it {what}")
 
 

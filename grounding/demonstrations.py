@@ -11,7 +11,7 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from grounding.mesh_folder import MeshFolder
-from grounding.oracles import Verdict, settled
+from grounding.oracles import Verdict, drop_verdicts
 from grounding.random_poses import afloat, on_ground, random_rest, random_turn
 from grounding.scenes import (
     LabelledScene,
@@ -19,7 +19,7 @@ from grounding.scenes import (
     Scenes,
     free,
     resting,
-    some_settles,
+    some_hold_in_physics,
     touchable,
 )
 from grounding.separation import separations
@@ -93,7 +93,7 @@ class DemonstrationGenerator:
         if pose is None:
             return None
         holds = (
-            settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0]
+            drop_verdicts(scene.situation(pose), pose[None], self._drops, self._scenes.items)[0]
             is Verdict.HOLDS
         )
         if holds != (kind in POSITIVE):
@@ -123,7 +123,7 @@ class DemonstrationGenerator:
 
     def _feasible(self, scene: SampledScene, rng: Random) -> bool:
         poses = np.concatenate([resting(scene, rng) for _ in range(16)])
-        return some_settles(scene, poses, self._drops, self._scenes.items)
+        return some_hold_in_physics(scene, poses, self._drops, self._scenes.items)
 
     # Samples that do not hold
 

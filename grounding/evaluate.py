@@ -14,7 +14,7 @@ import numpy as np
 
 from grounding.dataset import Dataset, Example
 from grounding.model import Model
-from grounding.oracles import NEAR, ItemOf, Verdict, paper_verdicts, settled
+from grounding.oracles import NEAR, ItemOf, Verdict, drop_verdicts, paper_verdicts
 from grounding.paper.blind import blind_ceiling
 from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
 from tamp.simulation.engines import open_drops
@@ -96,7 +96,7 @@ def evaluate(
             started = time.perf_counter()
             poses = model.propose(situation, 1, rng)
             times.append(time.perf_counter() - started)
-            verdict = settled(situation, poses, drops, items)[0] if len(poses) else None
+            verdict = drop_verdicts(situation, poses, drops, items)[0] if len(poses) else None
             verdicts[str(verdict or NOTHING)] += 1
 
             more = [model.propose(situation, 1, rng) for _ in range(draws - 1)]
@@ -107,8 +107,8 @@ def evaluate(
                 ]
 
             right.append(_right(model, example))
-            known = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
-            feasible += known or verdict is Verdict.HOLDS
+            possible = bool(data.arrays["feasible"][index]) if "feasible" in data.arrays else True
+            feasible += possible or verdict is Verdict.HOLDS
             if done % 50 == 49:
                 progress(done + 1, len(order))
 

@@ -26,7 +26,7 @@ from grounding.chunks import RELATIONS, Progress, make_dataset
 from grounding.dataset import Dataset
 from grounding.mesh_folder import MeshFolder
 from grounding.model import Model
-from grounding.oracles import Verdict, settled
+from grounding.oracles import Verdict, drop_verdicts
 from grounding.random_poses import random_turn
 from grounding.registry import load_model
 from grounding.scenes import LabelledScene, SampledScene, Scenes, free
@@ -44,7 +44,7 @@ holds too.
 """
 
 KINDS = (STAYED, RESTED, *(verdict.value for verdict in Verdict if verdict is not Verdict.HOLDS))
-"""The types of samples: the failures are those of `settled`."""
+"""The types of samples: the failures are those of `drop_verdicts`."""
 
 DRAWN, MOVED, SLID = 12, 6, 8
 """Poses that are drawn in a scene, that one which was found is moved to, and that it is slid to."""
@@ -209,7 +209,7 @@ class Explorer:
         something.
         """
         situation, items = scene.situation(poses[0]), self._scenes.items
-        verdicts = settled(situation, poses, self._drops, items)
+        verdicts = drop_verdicts(situation, poses, self._drops, items)
         tried = [(verdict.value, pose) for verdict, pose in zip(verdicts, poses, strict=True)]
         # what is lower than the region, or in another body, cannot come to rest in it
         falling = (
@@ -233,7 +233,7 @@ class Explorer:
                 stayed.append(verdict is Verdict.HOLDS)
 
         found: list[tuple[str, Array]] = []
-        after = settled(situation, np.stack(rests), self._drops, items) if rests else []
+        after = drop_verdicts(situation, np.stack(rests), self._drops, items) if rests else []
         for verdict, pose, there in zip(after, rests, stayed, strict=True):
             if verdict is Verdict.HOLDS and len(free(pose[None], scene)):
                 found.append((STAYED if there else RESTED, pose))

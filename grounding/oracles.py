@@ -100,7 +100,9 @@ def paper_verdicts(situation: RelationScene, poses: Array) -> list[Verdict]:
     ]
 
 
-def settled(situation: RelationScene, poses: Array, drops: Drops, items: ItemOf) -> list[Verdict]:
+def drop_verdicts(
+    situation: RelationScene, poses: Array, drops: Drops, items: ItemOf
+) -> list[Verdict]:
     """Judge by a physics simulation whether the relation holds with the body at each of the poses,
     shape (n, 4, 4), and goes on holding.
     """

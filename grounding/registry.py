@@ -87,6 +87,10 @@ FEW_SHOT = "conjunctions"
 
 RELATIONS = ("on", "inside")
 
+LEARNED = ("stack", "pack", "left_of", "between")
+"""Relations that were learned from the scripted demonstrations of examples/table/show.py: their
+name is "learned", and the domain `learned` has them."""
+
 
 def load_model(path: Path, model: str | None = None) -> Model:
     """Load the model of a weight file.
@@ -226,6 +230,14 @@ GROUNDINGS: Mapping[str, Mapping[str, Callable[..., Grounding | Generator]]] = {
             },
         }
         for relation in RELATIONS
+    },
+    **{
+        relation: {
+            "learned": partial(
+                file_grounding, relation, SHIPPED / f"{relation}_learned.safetensors"
+            )
+        }
+        for relation in LEARNED
     },
     ANY_RELATION: {".safetensors": file_grounding},
 }

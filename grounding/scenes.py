@@ -14,7 +14,7 @@ from numpy.random import Generator as Random
 from grounding.body_geometry import BodyGeometry
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
-from grounding.oracles import REACH, ItemOf, Verdict, settled
+from grounding.oracles import REACH, ItemOf, Verdict, drop_verdicts
 from grounding.random_poses import (
     afloat,
     on_ground,
@@ -222,11 +222,11 @@ def touchable(scene: SampledScene, pose: Array, items: ItemOf) -> list[tuple[Ite
     return [(items(item.form), item.matrix) for item in bodies]
 
 
-def some_settles(scene: SampledScene, poses: Array, drops: Drops, items: ItemOf) -> bool:
+def some_hold_in_physics(scene: SampledScene, poses: Array, drops: Drops, items: ItemOf) -> bool:
     """Check whether the relation holds in physics at one of the poses T_world_body, shape (n, 4,
     4), the first TRIED of them that are clear of the other bodies.
     """
-    verdicts = settled(scene.situation(np.eye(4)), free(poses, scene)[:TRIED], drops, items)
+    verdicts = drop_verdicts(scene.situation(np.eye(4)), free(poses, scene)[:TRIED], drops, items)
     return any(verdict is Verdict.HOLDS for verdict in verdicts)
 
 

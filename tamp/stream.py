@@ -51,6 +51,17 @@ class Call:
     refused: Callable[[Any, Rejection | str], None] = _unseen
 
 
+class StreamKind(Enum):
+    """The kinds of streams, by what they are asked for; what is told of time goes by these."""
+
+    GRASPS = "grasps"
+    PLACEMENTS = "placements"
+    IK = "ik"
+    TESTS = "tests"
+    MOTION = "motion"
+    OTHER = "other streams"
+
+
 class RejectionKind(Enum):
     """The kinds of causes for which a stream gives no value; code decides by these, never by words.
 

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks.house import first_word, opens_with_verb
+
 ROOT = Path(__file__).parent.parent
 
 VERB_FOLDERS = ("grounding", "tamp")
@@ -23,15 +25,6 @@ LONGER: set[str] = set()
 
 AIR_FROM_LINES = 20
 """Lines of code from which on a function has a blank line or a comment between its steps."""
-
-NO_VERB = {
-    "a", "all", "an", "and", "any", "as", "at", "both", "by", "each", "every", "few", "for",
-    "from", "if", "in", "its", "least", "many", "most", "my", "no", "none", "not", "nothing",
-    "of", "on", "one", "only", "or", "our", "some", "such", "than", "that", "the", "their",
-    "there", "these", "this", "those", "to", "two", "what", "when", "where", "whether", "which",
-    "while", "who", "whose", "why", "how", "with", "within", "without",
-}  # fmt: skip
-"""First words of docstrings that are no verbs, beside what ruff's D401 tells."""
 
 RELATIVE = {
     "what", "whether", "where", "which", "who", "whose", "why", "how", "when", "that", "of",
@@ -62,19 +55,6 @@ def _code(node: ast.FunctionDef | ast.AsyncFunctionDef) -> range:
     documented = ast.get_docstring(node) is not None
     body = node.body[1:] if documented else node.body
     return range(body[0].lineno, (node.end_lineno or 0) + 1) if body else range(0)
-
-
-def first_word(docstring: str) -> str:
-    """Return the first word of a docstring as it stands, without punctuation at its end."""
-    return docstring.split()[0].rstrip(".,:;") if docstring.split() else ""
-
-
-def opens_with_verb(docstring: str) -> bool:
-    """Check that a docstring opens with a capitalized word which can be a verb, and no plural."""
-    word = first_word(docstring)
-    named = "_" in word or "'" in word or word.isupper()
-    plural = word.endswith("s") and not word.endswith("ss")
-    return word[:1].isupper() and not named and not plural and word.lower() not in NO_VERB
 
 
 @pytest.mark.parametrize(

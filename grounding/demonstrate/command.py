@@ -60,10 +60,10 @@ def _demonstrate(options: Demo) -> None:
         raise InputError(f"--seed must be between 0 and 2**63, not {options.seed}")
     named = None if options.relation is None else parse_relation(options.relation)
 
-    from grounding.demonstrate.folder import check_folder
+    from grounding.demonstrate.folder import Source, check_folder
     from grounding.demonstrate.runner import Runner
     from grounding.demonstrate.server import DemonstrationServer
-    from grounding.demonstrate.studio import Source, Studio
+    from grounding.demonstrate.studio import Studio
     from grounding.demonstrate.workbench import Workbench
     from tamp.view.server import check_browser, serve_until_interrupted
 

@@ -27,6 +27,23 @@ FIRST_FACT = re.compile(r"[\s(]*(?:(?:and|not)[\s(]+)*([a-z][\w-]*)", re.IGNOREC
 """What a goal says first, behind all `and` and `not`."""
 
 
+@dataclass(frozen=True)
+class Source:
+    """The origin of scenes, and the place of demonstrations.
+
+    Attributes:
+        scene: A problem file to demonstrate in; None for generated scenes.
+        out: The folder of the demonstrations; None for demos/RELATION.
+    """
+
+    scene: Path | None = None
+    out: Path | None = None
+
+    def folder(self, relation: Relation) -> Path:
+        """Return the folder of a relation's demonstrations."""
+        return self.out or Path("demos") / relation.name
+
+
 @dataclass(frozen=True, eq=False)
 class Card:
     """A file of the folder.
@@ -191,9 +208,9 @@ class DemonstrationFolder:
     def _card(self, file: Path) -> Card:
         state = file.stat()
         stamp = (state.st_mtime_ns, state.st_size)
-        known = self._cards.get(file.name)
-        if known is not None and known.stamp == stamp:
-            return known
+        cached = self._cards.get(file.name)
+        if cached is not None and cached.stamp == stamp:
+            return cached
         try:
             loaded = load_scene(file, demonstration=True)
             labels = read_labels(loaded, self.relation)

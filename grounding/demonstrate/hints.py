@@ -12,7 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from grounding.demonstrate.relation import Relation
-from grounding.demonstrate.scene import viewer_yaw
+from grounding.demonstrate.viewer import viewer_yaw
 from grounding.relations.demonstration_file import Demonstration
 from grounding.relations.situation import joined, situation_of
 from grounding.relations.variety import unvaried

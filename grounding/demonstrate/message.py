@@ -52,6 +52,18 @@ def read_word(message: Message, key: str) -> str:
     return value
 
 
+def read_angle(message: Message, key: str) -> float:
+    """Read an angle, radians.
+
+    Raises:
+        InputError: It is missing, or no finite number.
+    """
+    value = message.get(key)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < HUGE:
+        raise InputError(f"'{key}' is no finite number")
+    return float(value)
+
+
 def _pose(name: str, numbers: object) -> Pose:
     """Check that 16 numbers are a rigid transform, and make it exactly one."""
     if not isinstance(numbers, list) or len(numbers) != 16:

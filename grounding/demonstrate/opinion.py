@@ -21,7 +21,7 @@ class Opinion:
 
     def __init__(self) -> None:
         self._key: tuple[object, ...] = ()
-        self._known: Grounding | LearnedRelation | None = None
+        self._learned: Grounding | LearnedRelation | None = None
 
     def of(self, uses: Uses, stage: Stage, poses: Mapping[str, Pose]) -> float | None:
         """Return the probability that the relation holds of a scene's arguments with bodies at
@@ -33,12 +33,12 @@ class Opinion:
             return None
         key = (uses.weights, state.st_mtime_ns, state.st_size)
         if key != self._key:
-            self._key, self._known = key, self._load(uses)
-        if self._known is None:
+            self._key, self._learned = key, self._load(uses)
+        if self._learned is None:
             return None
 
         try:
-            chance = float(self._known.classify(stage.moved(poses).scene, stage.arguments))
+            chance = float(self._learned.classify(stage.moved(poses).scene, stage.arguments))
         except InputError:  # a body below the floor; another number of arguments
             return None
         return chance if math.isfinite(chance) else None
@@ -46,7 +46,7 @@ class Opinion:
     @staticmethod
     def _load(uses: Uses) -> Grounding | LearnedRelation | None:
         try:
-            known = load_grounding(uses.weights)
+            learned = load_grounding(uses.weights)
         except InputError:
             return None
-        return None if isinstance(known, Proposer) else known
+        return None if isinstance(learned, Proposer) else learned

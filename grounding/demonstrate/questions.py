@@ -39,11 +39,11 @@ def telling_stages(uses: Uses, rng: Random) -> list[Stage]:
     """
     if not uses.weights.is_file():
         raise InputError(f"{uses.relation} has not been learned yet", remedy="Learn it first")
-    known = load_grounding(uses.weights)
-    if isinstance(known, Proposer):
+    learned = load_grounding(uses.weights)
+    if isinstance(learned, Proposer):
         what = f"what was learned cannot tell yet where {uses.relation} holds"
         raise InputError(what, remedy="Show more of both labels, and learn again")
-    if not isinstance(known, LearnedRelation):
+    if not isinstance(learned, LearnedRelation):
         raise InputError("nothing can be asked of these weights", file=uses.weights)
 
     shown = list(demonstrations_of(uses.relation, [uses.folder]))
@@ -54,9 +54,9 @@ def telling_stages(uses: Uses, rng: Random) -> list[Stage]:
     other = situations.rows(np.flatnonzero(~holds)) if not holds.all() else None
     evidence = gather(situations.rows(np.flatnonzero(holds)), other, rng)
 
-    pool = candidates(known, examples_of(shown), POOL, rng)
+    pool = candidates(learned, examples_of(shown), POOL, rng)
     if not pool:
         raise InputError("no scene to ask about was found", remedy="Go on with the next scene")
     found = joined([situation_of(one.scene, one.arguments) for one in pool])
-    rows = questions(evidence, known.committee, found, AT_ONCE)
+    rows = questions(evidence, learned.committee, found, AT_ONCE)
     return [Stage(pool[row].bodies, pool[row].scene, pool[row].arguments) for row in rows.tolist()]

@@ -14,6 +14,7 @@ from numpy.random import Generator as Random
 
 from grounding.demonstrate.models import sample_body, sample_furniture
 from grounding.demonstrate.relation import Argument, Relation
+from grounding.demonstrate.viewer import nearest_side, stand_of
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import (
     BodyEntry,
@@ -39,7 +40,7 @@ OTHER = ([0.80, 0.80, 0.78], [0.72, 0.75, 0.78], [0.78, 0.74, 0.70])
 OTHERS = 2
 """Other bodies in a generated scene, at most."""
 
-STANDING = 0.6
+UPRIGHT_SHARE = 0.6
 """Share of bodies that stand at first as they are modelled; the rest on any of their faces."""
 
 TRIES = 60
@@ -95,6 +96,24 @@ class Stage:
             name: replace(entry, pose=poses.get(name, entry.pose))
             for name, entry in self.entries.items()
         }
+        return replace(self, entries=entries, scene=_read(entries))
+
+    def fronted(self, eye: float) -> Stage:
+        """Return the same scene, in which what the arguments stand on has its front on the side
+        that is nearest to the viewer.
+
+        Args:
+            eye: The direction from there to the viewer's eye, radians in the world.
+
+        Raises:
+            InputError: The arguments stand on nothing.
+        """
+        stand = stand_of(self.scene, self.arguments)
+        if stand is None:
+            raise InputError("the arguments stand on nothing that has a front")
+        entry = self.entries[stand.name]
+        shape = {**entry.shape, "front": f"{nearest_side(stand, eye)} deg"}
+        entries = {**self.entries, stand.name: replace(entry, shape=shape)}
         return replace(self, entries=entries, scene=_read(entries))
 
     def file(self, label: Label, note: str = "") -> DemonstrationFile:
@@ -153,12 +172,12 @@ def open_stage(file: str | Path, relation: Relation, chosen: Mapping[str, str]) 
         if wanted is not None and wanted not in choices:
             what = f"'{wanted}' cannot be the argument {argument.name}"
             raise InputError(what, file=file, found=wanted, choices=choices)
-        rest = [name for name in (free if choices[0] in scene.movable else choices)]
-        rest = [name for name in rest if name not in arguments]
-        if wanted is None and not rest:
+        remaining = [name for name in (free if choices[0] in scene.movable else choices)]
+        remaining = [name for name in remaining if name not in arguments]
+        if wanted is None and not remaining:
             what = f"too few bodies or places for {relation}"
             raise InputError(what, file=file, remedy="Leave the scene out: one is generated")
-        arguments.append(wanted or rest[0])
+        arguments.append(wanted or remaining[0])
 
     return Stage(entries, scene, tuple(arguments))
 
@@ -177,28 +196,6 @@ def choices_of(argument: Argument, scene: Scene) -> list[str]:
         found = [*scene.movable, *scene.surfaces, *scene.cavities]
     if not found:
         raise InputError(f"the scene has no {argument.kind} for the argument {argument.name}")
-    return found
-
-
-def viewer_yaw(scene: Scene, arguments: tuple[str, ...]) -> float:
-    """Return the yaw, radians, of the direction in which a viewer looks from the front of what the
-    arguments stand on.
-    """
-    stand = stand_of(scene, arguments)
-    return math.pi / 2 if stand is None else stand.pose.yaw + stand.front + math.pi / 2
-
-
-def stand_of(scene: Scene, arguments: tuple[str, ...]) -> Body | None:
-    """Return the furniture that the arguments stand on, or are places of; None for none."""
-    found: Body | None = None
-    for name in arguments:
-        body = scene.bodies.get(name)
-        support = name if body is None or body.support is None else body.support
-        place = scene.surfaces.get(support) or scene.cavities.get(support)
-        owner = None if place is None else scene.bodies[place.body]
-        if owner is not None and owner.surfaces:
-            return owner
-        found = found or owner  # a container, unless there is a table
     return found
 
 
@@ -276,7 +273,7 @@ def _free_pose(
     faces = stable_faces_of(replace(body, pose=Pose(), support=None)).faces if body.movable else ()
     for _ in range(TRIES):
         rotation = np.eye(3)
-        if faces and rng.random() > STANDING:
+        if faces and rng.random() > UPRIGHT_SHARE:
             rotation = faces[int(rng.integers(len(faces)))].rotation
         turn = Pose.from_xyz_yaw(0.0, 0.0, 0.0, float(rng.uniform(-math.pi, math.pi)))
         local = np.eye(4)

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from grounding.demonstrate.scene import Stage, viewer_yaw
+from grounding.demonstrate.scene import Stage
+from grounding.demonstrate.viewer import front_edge, stand_of, viewer_yaw
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body
@@ -34,6 +35,7 @@ def stage_document(stage: Stage, number: int) -> dict[str, Any]:
     scene = stage.scene
     yaw = viewer_yaw(scene, stage.arguments)
     target, radius = _framed(stage)
+    stand = stand_of(scene, stage.arguments)
     return {
         "number": number,
         "arguments": list(stage.arguments),
@@ -47,6 +49,7 @@ def stage_document(stage: Stage, number: int) -> dict[str, Any]:
             for place in (*scene.surfaces.values(), *scene.cavities.values())
         ],
         "view": {"target": target.tolist(), "yaw": yaw + np.pi, "radius": radius},
+        "front": None if stand is None else [round(float(x), 4) for x in front_edge(stand)],
         "floor": FLOOR,
     }
 

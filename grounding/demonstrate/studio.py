@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from grounding.demonstrate.folder import DemonstrationFolder
+from grounding.demonstrate.folder import DemonstrationFolder, Source
 from grounding.demonstrate.hints import contradicted
-from grounding.demonstrate.message import Message, read_poses, read_word
+from grounding.demonstrate.message import Message, read_angle, read_poses, read_word
 from grounding.demonstrate.opinion import Opinion
 from grounding.demonstrate.questions import telling_stages
 from grounding.demonstrate.records import in_arguments, records
@@ -27,23 +26,6 @@ from grounding.relations.demonstration_file import Demonstration, Label
 from tamp.errors import InputError, printable
 from tamp.geometric.scene.pose import Pose
 from tamp.view.page import harmless
-
-
-@dataclass(frozen=True)
-class Source:
-    """The origin of scenes, and the place of demonstrations.
-
-    Attributes:
-        scene: A problem file to demonstrate in; None for generated scenes.
-        out: The folder of the demonstrations; None for demos/RELATION.
-    """
-
-    scene: Path | None = None
-    out: Path | None = None
-
-    def folder(self, relation: Relation) -> Path:
-        """Return the folder of a relation's demonstrations."""
-        return self.out or Path("demos") / relation.name
 
 
 class Studio:
@@ -82,6 +64,7 @@ class Studio:
         self._actions: Mapping[str, Callable[[Message], Message]] = {
             "relation": self._change_relation,
             "assign": self._assign,
+            "front": self._front,
             "next": self._turn,
             "ask": self._ask,
             "open": self._open,
@@ -196,6 +179,11 @@ class Studio:
             self._chosen = dict(zip(names, arguments, strict=True))
         stage = self.stage.moved(self._poses(message))
         return self._turn_to(replace(stage, arguments=tuple(arguments)))
+
+    def _front(self, message: Message) -> Message:
+        """Make the side from which the page looks the front of what the arguments stand on."""
+        stage = self.stage.moved(self._poses(message))
+        return self._turn_to(stage.fronted(read_angle(message, "yaw")))
 
     def _turn(self, message: Message) -> Message:
         """Turn to another scene."""

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from grounding.demonstrate.scene import viewer_yaw
+from grounding.demonstrate.viewer import viewer_yaw
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene

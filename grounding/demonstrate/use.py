@@ -8,13 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from grounding.demonstrate.relation import Relation
-from grounding.demonstrate.scene import Stage, stand_of, viewer_yaw
+from grounding.demonstrate.scene import Stage
+from grounding.demonstrate.viewer import depth, stand_of, viewer_yaw
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import ROBOT, ROOM, demonstration_text
 from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
-from tamp.geometric.scene.bounds import bounds
-from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.system.files import find_problem
 from tamp.system.outputs import write_whole
@@ -114,9 +113,8 @@ def _in_front(stage: Stage) -> tuple[str, str]:
     scene = stage.scene
     yaw = viewer_yaw(scene, stage.arguments)
     stand = stand_of(scene, stage.arguments) or next(iter(scene.bodies.values()))
-    low, high = bounds(stand.parts, Pose())  # in its own frame: its depth, however it is turned
     x, y = stand.pose.position[:2]
-    back = float(high[1] - low[1]) / 2 + AWAY
+    back = depth(stand) / 2 + AWAY
     base = f"[{x - back * math.cos(yaw):.3f}, {y - back * math.sin(yaw):.3f}, {yaw:.4f}]"
     room = f"{{x: [{x - AROUND:.3f}, {x + AROUND:.3f}], y: [{y - AROUND:.3f}, {y + AROUND:.3f}]}}"
     return f"{{model: panda_mobile, base: {base}}}", room

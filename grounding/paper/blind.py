@@ -137,13 +137,13 @@ def blind_ceiling(
         seed: Of the draws.
     """
     key = (tuple(int(index) for index in indices), draws, seed)
-    known = _KNOWN.setdefault(data, {})
-    if key not in known:
-        known[key] = _ceiling(data, key[0], draws, seed)
-    return known[key]
+    ceilings = _CEILINGS.setdefault(data, {})
+    if key not in ceilings:
+        ceilings[key] = _ceiling(data, key[0], draws, seed)
+    return ceilings[key]
 
 
-_KNOWN: WeakKeyDictionary[Dataset, dict[tuple[tuple[int, ...], int, int], BlindCeiling]] = (
+_CEILINGS: WeakKeyDictionary[Dataset, dict[tuple[tuple[int, ...], int, int], BlindCeiling]] = (
     WeakKeyDictionary()
 )
 """Ceilings by scenes, draws and seed: many models are judged on the same ones."""

@@ -11,12 +11,12 @@ from numpy.random import Generator as Random
 
 from grounding.demonstrations import POSITIVE, sticking_out
 from grounding.mesh_folder import MeshFolder
-from grounding.oracles import Verdict, settled
+from grounding.oracles import Verdict, drop_verdicts
 from grounding.paper.oracle import in_place
 from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M, PaperScenes
 from grounding.random_poses import random_rest, random_turn
 from grounding.relation_scene import Placed
-from grounding.scenes import LabelledScene, SampledScene, free, some_settles, touchable
+from grounding.scenes import LabelledScene, SampledScene, free, some_hold_in_physics, touchable
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drops import Drops
@@ -68,7 +68,7 @@ class PaperDemonstrations:
         if pose is None:
             return None
 
-        verdicts = settled(scene.situation(pose), pose[None], self._drops, self._scenes.items)
+        verdicts = drop_verdicts(scene.situation(pose), pose[None], self._drops, self._scenes.items)
         if (verdicts[0] is Verdict.HOLDS) != positive:
             return None
         # the published code labels `inside` by the test that it judges by, contacts left out
@@ -92,7 +92,7 @@ class PaperDemonstrations:
 
     def _feasible(self, scene: SampledScene, rng: Random) -> bool:
         poses = np.concatenate([self._scenes.resting(scene, rng) for _ in range(16)])
-        return some_settles(scene, poses, self._drops, self._scenes.items)
+        return some_hold_in_physics(scene, poses, self._drops, self._scenes.items)
 
     # Samples that do not hold
 

@@ -136,7 +136,7 @@ class CloudFeatures:
 
     def __init__(self, encoder: Encoder, residual: bool = True) -> None:
         self._encode, self._residual = encoder, residual
-        self._known: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
+        self._clouds: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
     def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
         """See Features."""
@@ -165,9 +165,9 @@ class CloudFeatures:
 
     def _features(self, item: Placed) -> Array:
         """Compute a body's features, once while it stays where it is."""
-        if item not in self._known:
-            self._known[item] = self._described(item)
-        return self._known[item]
+        if item not in self._clouds:
+            self._clouds[item] = self._described(item)
+        return self._clouds[item]
 
     def _described(self, item: Placed, code: Array | None = None) -> Array:
         rotation, position = item.matrix[:3, :3], item.matrix[:3, 3]

@@ -53,8 +53,8 @@ class Network:
         (first, bias), (second, bias_2), (third, bias_3) = self.scene
         if not len(others):
             return np.broadcast_to(bias_3, (len(arguments), len(bias_3)))
-        known = arguments.shape[1]
-        hidden = (arguments @ first[:known] + bias)[:, None] + others @ first[known:]
+        width = arguments.shape[1]
+        hidden = (arguments @ first[:width] + bias)[:, None] + others @ first[width:]
         hidden = np.maximum(np.maximum(hidden, 0, out=hidden) @ second + bias_2, 0)
         pooled = self._weighted(hidden) if self.attend else hidden.mean(axis=1)
         return pooled @ third + bias_3

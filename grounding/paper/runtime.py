@@ -171,10 +171,10 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
     """
     inputs = np.empty((len(noise), network.main[0][0].shape[0]), np.float32)
     arguments = seen.arguments.reshape(1, -1).astype(np.float32)
-    known = arguments.shape[1]
-    inputs[:, :known] = arguments
+    width = arguments.shape[1]
+    inputs[:, :width] = arguments
     if network.scene:
-        inputs[:, known:-NOISE] = network.context(arguments, seen.others.astype(np.float32))
+        inputs[:, width:-NOISE] = network.context(arguments, seen.others.astype(np.float32))
     inputs[:, -NOISE:] = noise
     pose = network(inputs)
     return pose[:, :3], pose[:, 3:]

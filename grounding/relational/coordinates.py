@@ -119,11 +119,11 @@ class RelationalCoordinates:
             TypeError: An entry is missing, unknown, or no number or truth value as it should be.
             ValueError: A level or an anchor that there is not.
         """
-        known = dict(card)
-        if known.get("ceiling", 0) is None:
-            known["ceiling"] = math.inf
-        chart = cls(**known)
-        for name, value in known.items():
+        numbers = dict(card)
+        if numbers.get("ceiling", 0) is None:
+            numbers["ceiling"] = math.inf
+        chart = cls(**numbers)
+        for name, value in numbers.items():
             wanted = {"level": int, "anchor": int, "contained": bool}.get(name, float)
             given = type(value)
             if given is not wanted and not (wanted is float and given is int):

@@ -60,19 +60,19 @@ class Flow:
             view.steadiness >= min(self.chart.steadiness, view.steadiness.max()), logits, -1e3
         )
         face = np.argmax(logits + rng.gumbel(size=(count, len(logits))), axis=1)
-        known, around = conditions[face], surroundings(view)
+        chosen, around = conditions[face], surroundings(view)
         half = (view.region.size[:2] / 2).astype(np.float32) * self._scale[:2]
         x: NDArray[np.float32] = rng.standard_normal((count, COORDINATES), dtype=np.float32)
         for step in range(STEPS):
             time = np.full((count, 1), step / STEPS, np.float32)
-            x += self.velocity(x, time, known, around, half) / STEPS
-        return self.chart.decode(view, face, settled_coordinates(x.astype(float) * self._scale))
+            x += self.velocity(x, time, chosen, around, half) / STEPS
+        return self.chart.decode(view, face, levelled(x.astype(float) * self._scale))
 
     def velocity(
         self,
         x: NDArray[np.float32],
         time: NDArray[np.float32],
-        known: NDArray[np.float32],
+        conditions: NDArray[np.float32],
         around: NDArray[np.float32],
         half: NDArray[np.float32],
     ) -> NDArray[np.float32]:
@@ -81,18 +81,18 @@ class Flow:
         Args:
             x: Coordinates in their scale.
             time: From 0, noise, to 1.
-            known: Conditions, shape (n, CONDITION).
+            conditions: Of the faces that are down, see `condition`, shape (n, CONDITION).
             around: Shape (m, AROUND).
             half: What takes the first two coordinates to metres, shape (2,).
         """
         pooled = np.zeros((len(x), POOLED), np.float32)
         if len(around):
-            pairs = pair_features(x[:, :2] * half, known, around)
+            pairs = pair_features(x[:, :2] * half, conditions, around)
             pooled = dense(self._pair, np.concatenate(pairs, axis=2)).max(axis=1)
-        return dense(self._velocity, np.concatenate([x, time, known, pooled], axis=1))
+        return dense(self._velocity, np.concatenate([x, time, conditions, pooled], axis=1))
 
 
-def settled_coordinates(coordinates: Array) -> Array:
+def levelled(coordinates: Array) -> Array:
     """Round heights and tilts that are within what physics leaves to none, as demonstrations have
     them.
     """
@@ -125,16 +125,16 @@ def surroundings(view: RegionFrame) -> NDArray[np.float32]:
     return np.concatenate([middle, half, heights], axis=1, dtype=np.float32)
 
 
-def pair_features(places: Any, known: Any, around: Any) -> tuple[Any, ...]:
+def pair_features(places: Any, conditions: Any, around: Any) -> tuple[Any, ...]:
     """Compute the features of n samples and m things around, parts of shape (n, m, 2) or (n, m, 4),
     PAIR in all; numpy's arrays or torch's.
 
     Args:
         places: Where the samples are, x and y in the region's frame, shape (n, 2), metres.
-        known: Their conditions, shape (n, CONDITION).
+        conditions: Of their faces, see `condition`, shape (n, CONDITION).
         around: Shape (m, AROUND), or (n, m, AROUND).
     """
     apart = around[..., :2] - places[:, None]  # (n, m, 2)
-    half = known[:, None, 4:6] / 8 + 0 * apart  # half the body's extents
+    half = conditions[:, None, 4:6] / 8 + 0 * apart  # half the body's extents
     gap = abs(apart) - around[..., 2:4] - half
     return 4 * apart, 8 * gap, 8 * half, 8 * (around[..., 2:] + 0 * apart[..., :1])

@@ -67,14 +67,14 @@ class FlowNet(nn.Module):
     def forward(self, x: Tensor, time: Tensor, scenes: Scenes) -> Tensor:
         """Compute velocities (n, 7) of samples (n, 7) at times (n, 1)."""
         places = x[:, :2] * scenes.half
-        pairs = torch.cat(pair_features(places, scenes.known, scenes.around), dim=2)
+        pairs = torch.cat(pair_features(places, scenes.conditions, scenes.around), dim=2)
         pooled = (
             run_layers(self.pair, pairs)
             .masked_fill(scenes.missing[..., None], -torch.inf)
             .amax(dim=1)
         )
         pooled = torch.where(scenes.missing.all(dim=1, keepdim=True), 0.0, pooled)
-        return run_layers(self.velocity, torch.cat([x, time, scenes.known, pooled], dim=1))
+        return run_layers(self.velocity, torch.cat([x, time, scenes.conditions, pooled], dim=1))
 
     def arrays(self) -> dict[str, NDArray[np.float32]]:
         """Return the weights as `Flow` reads them."""
@@ -87,14 +87,14 @@ class Scenes:
     missing, half sizes scaled.
     """
 
-    known: Tensor
+    conditions: Tensor
     around: Tensor
     missing: Tensor
     half: Tensor
 
     def take(self, rows: Tensor) -> Scenes:
         """Select some of the scenes."""
-        return Scenes(self.known[rows], self.around[rows], self.missing[rows], self.half[rows])
+        return Scenes(self.conditions[rows], self.around[rows], self.missing[rows], self.half[rows])
 
 
 def train_flow(
@@ -163,10 +163,10 @@ def _scenes(
     face: Tensor,
     scale: NDArray[np.float32],
 ) -> Scenes:
-    known = np.stack([rows[row] for rows, row in zip(conditions, face.tolist(), strict=True)])
+    chosen = np.stack([rows[row] for rows, row in zip(conditions, face.tolist(), strict=True)])
     around, missing = _padded([surroundings(one.view) for one in positive], AROUND)
     half = np.stack([one.view.region.size[:2] / 2 for one in positive]) * scale[:2]
-    return Scenes(torch.tensor(known), around, missing, torch.tensor(half, dtype=torch.float32))
+    return Scenes(torch.tensor(chosen), around, missing, torch.tensor(half, dtype=torch.float32))
 
 
 def _padded(rows: Sequence[NDArray[Any]], width: int) -> tuple[Tensor, Tensor]:

@@ -75,16 +75,16 @@ def candidates(
             pose, changed = poses[0], bool(rng.random() < near)
             if changed:
                 pose = _lifted(scene, name, otherwise(pose, rng))
-            settled = _settled(drops, scene, name, pose)
-            after = {**bodies, name: replace(bodies[name], pose=settled)}
+            at_rest = _at_rest(drops, scene, name, pose)
+            after = {**bodies, name: replace(bodies[name], pose=at_rest)}
             there = loaded(after, example.arguments)
             likely = relation.classify(there, example.arguments)
-            stayed = not changed and _same(pose, settled)
+            stayed = not changed and _same(pose, at_rest)
             found.append(Candidate(after, there, example.arguments, not changed, stayed, likely))
     return found
 
 
-def _settled(drops: Drops, scene: Scene, name: str, pose: Pose) -> Pose:
+def _at_rest(drops: Drops, scene: Scene, name: str, pose: Pose) -> Pose:
     """Let a body go at a pose, the others stand still."""
     others = [
         (Item(body.parts, body.mass, body.friction), body.pose.matrix)

@@ -193,6 +193,10 @@ def _line() -> Iterator[Measure]:
         "line: angle", 0.12, 0.3, "place", "angle between {1} and {2} seen from it", least=True
     )
     yield _mm("line: beyond 2", 0.015, 0.2, "place", "beyond {2} along the line from {1}")
+    yield _mm("nearer: 1", 0.015, 0.8, "place", "farther from {1} than from {2}")
+    for near, far in ((1, 2), (2, 1)):
+        words = f"farther from {{{near}}} than {{{far}}} is"
+        yield _mm(f"farther: {near}", 0.015, 1.0, "place", words)
 
 
 def _furniture() -> Iterator[Measure]:
@@ -210,3 +214,10 @@ def _furniture() -> Iterator[Measure]:
     yield _mm(
         "furniture: any edge", 0.012, 0.8, "absolute", "from the nearest edge of the furniture"
     )
+    yield _mm("furniture: end", 0.012, 0.9, "absolute", "from the nearer end of the furniture")
+    words = "from the nearer long edge of the furniture"
+    yield _mm("furniture: long edge", 0.012, 0.9, "absolute", words)
+    words = "from both edges of the nearest corner of the furniture, at most"
+    yield _mm("furniture: corner", 0.012, 0.8, "absolute", words)
+    words = "distance from the furniture's middle"
+    yield _mm("furniture: middle", 0.015, 0.8, "absolute", words, least=True)

@@ -91,6 +91,12 @@ def said(learned: Learned, shown: list[Demonstration]) -> list[str]:
     if learned.cannot_tell:
         lines.append(f"it only proposes, and cannot tell yet where it holds: {learned.cannot_tell}")
 
+    if not learned.generator.steady:
+        lines.append(
+            f"{names[0]} stands on no stable face where it holds: this is told apart and proposed, "
+            "and not planned, for the planner puts bodies down on such faces"
+        )
+
     situations = joined([situation_of(one.scene, one.arguments) for one in shown])
     holds = np.array([one.holds for one in shown])
     wanting = [*missing(holds), *(text for _, text in unvaried(situations, holds, names))]

@@ -139,15 +139,18 @@ def _facts(form: Node, relation: str, holds: bool = True) -> Iterator[tuple[Grou
 
 
 def _names(group: Group, scene: Scene) -> tuple[str, ...]:
-    known = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
+    scene_names = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
     words = [part for part in group.items[1:] if isinstance(part, Symbol)]
     if not 1 <= len(words) <= MOST_ARGUMENTS or len(words) != len(group.items) - 1:
         what = f"a demonstration names one to {MOST_ARGUMENTS} bodies, surfaces or containers"
         raise error(group.place, what)
 
     for word in words:
-        if word.text not in known:
+        if word.text not in scene_names:
             raise error(
-                word, f"unknown object '{word.written}'", found=word.written, choices=known.values()
+                word,
+                f"unknown object '{word.written}'",
+                found=word.written,
+                choices=scene_names.values(),
             )
-    return tuple(known[word.text] for word in words)
+    return tuple(scene_names[word.text] for word in words)

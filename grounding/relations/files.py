@@ -21,7 +21,7 @@ from tamp.errors import InputError
 MODEL = "conjunctions"
 """What the card calls it."""
 
-VERSION = 1
+VERSION = 2
 """Of the catalogue of measures: weights of another one are refused."""
 
 KINDS = ("movable", "fixed", "surface", "container")

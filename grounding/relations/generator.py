@@ -42,6 +42,10 @@ OTHERWISE = 0.3
 wanted.
 """
 
+FREE = 0.005
+"""Metres by which a demonstration that was carried over may be in another argument, for its chart
+to have the credit."""
+
 GOOD = -1.0
 """A score from which on a place is worth trying though others are better."""
 
@@ -129,7 +133,7 @@ class Generator:
         rotation = self.shown.R[one].copy()
         if self.steady and len(steady):
             turned = np.flatnonzero(rng.random(n) < OTHERWISE)
-            rotation[turned] = _standing(steady[rng.integers(0, len(steady), len(turned))], rng)
+            rotation[turned] = _turned_down(steady[rng.integers(0, len(steady), len(turned))], rng)
         carry(
             s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support,
             self.shown.codes[chart], place, outside, self.shown.yaw[chart, one],
@@ -209,10 +213,12 @@ def _liked(
         every.outside[chart, rows], every.yaw[chart, rows], every.R[rows],
         rng.uniform(-np.pi, np.pi, (n, 2)), rng.uniform(-0.95, 0.95, (n, 2)), onto(s, level),
     )  # fmt: skip
-    return float(committee.predict(s).mean())
+    bad, anywhere = np.empty(n), np.full(n, np.inf)  # chance puts the others near edges, too
+    trouble(s.corners, s.counts, s.inner, s.shape, s.R, s.p, s.support, anywhere, ANY_WAY, bad)
+    return float((committee.predict(s) * (bad < FREE)).mean())
 
 
-def _standing(down: Array, rng: Random) -> Array:
+def _turned_down(down: Array, rng: Random) -> Array:
     """Return rotations that turn vectors of a body's frame (n, 3) down, at any yaw, (n, 3, 3)."""
     side = np.where(np.abs(down[:, :1]) < 0.9, np.eye(3)[0], np.eye(3)[1])
     x = np.cross(down, side)

@@ -38,7 +38,7 @@ class LearnedRelation:
 
     def __init__(self, weights: Weights) -> None:
         self.kinds, self.committee, self.generator = read_learned(weights)
-        self._known: Committee = self.committee
+        self._committee: Committee = self.committee
         self._proposes: Generator = self.generator
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
@@ -50,7 +50,7 @@ class LearnedRelation:
         count = len(self.kinds)
         if len(arguments) != count:
             raise InputError(f"the relation has {count} arguments, not {len(arguments)}")
-        return float(self._known.predict(situation_of(scene, arguments))[0])
+        return float(self._committee.predict(situation_of(scene, arguments))[0])
 
     def propose(
         self, scene: Scene, arguments: Sequence[str], count: int, rng: Random

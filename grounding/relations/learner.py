@@ -197,14 +197,17 @@ def _kind(one: Demonstration, place: int) -> str:
 
 
 def _steadily(shown: Sequence[Demonstration]) -> bool:
-    """Check whether argument 0 stood on a stable face in most of what holds."""
+    """Check whether argument 0 stood on a stable face in most of what holds, or at least upright on
+    one of its own axes: a capsule has no stable face that it would stand on.
+    """
     stood: list[bool] = []
     for one in shown:
         if one.holds:
             body = one.scene.bodies[one.arguments[0]]
             down = -body.pose.rotation[2]
             faces = geometry_of(body.parts).faces
-            stood.append(any(float(-face.rotation[2] @ down) > STEADY for face in faces))
+            level = float(np.abs(down).max()) > STEADY
+            stood.append(level or any(float(-face.rotation[2] @ down) > STEADY for face in faces))
     return float(np.mean(stood)) >= 0.8
 
 

@@ -210,12 +210,15 @@ def _line(p, out, c):
     out[c + 4] = (abs(share - 0.5) - 0.5) * length
     out[c + 5] = abs(wrap(bearing(p, 0, 1) - bearing(p, 0, 2)))
     out[c + 6] = (share - 1.0) * length
-    return c + 7
+    first, second = math.hypot(u, v), math.hypot(p[0, 0] - p[2, 0], p[0, 1] - p[2, 1])
+    out[c + 7], out[c + 8], out[c + 9] = first - second, first - length, second - length
+    return c + 10
 
 
 @njit(cache=True)
 def _furniture(corners, counts, shape, R, p, support, out, c):
-    nearest = np.inf
+    away = 0.0
+    gaps = np.empty(2)
     for axis in range(2):
         angle = support[1] + axis * 0.5 * math.pi
         x, y = math.cos(angle), math.sin(angle)
@@ -225,11 +228,13 @@ def _furniture(corners, counts, shape, R, p, support, out, c):
         middle = 0.5 * (a + b) - origin
         out[c], out[c + 1] = middle, abs(middle) - side
         out[c + 2], out[c + 3] = a - origin + side, origin + side - b
-        nearest = min(nearest, a - origin + side, origin + side - b)
+        gaps[axis] = min(a - origin + side, origin + side - b)
+        away += middle * middle
         out[c + 4] = p[0, axis]
         c += 5
-    out[c] = nearest
-    return c + 1
+    out[c], out[c + 1], out[c + 2] = min(gaps[0], gaps[1]), gaps[0], gaps[1]
+    out[c + 3], out[c + 4] = max(gaps[0], gaps[1]), math.sqrt(away)
+    return c + 5
 
 
 @njit(cache=True)

@@ -41,10 +41,12 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
 
     parsed = parse_domain(texts[domain][1], domain)
     declared = parse_streams(texts[streams][1], parsed, streams)
-    known = parsed.predicates.get(words.name)
+    present = parsed.predicates.get(words.name)
     names = {stream.name for stream in declared.streams}
-    if known is not None and len(known.parameters) != len(words.kinds):
-        what = f"'{words.name}' has {len(known.parameters)} arguments here, not {len(words.kinds)}"
+    if present is not None and len(present.parameters) != len(words.kinds):
+        what = (
+            f"'{words.name}' has {len(present.parameters)} arguments here, not {len(words.kinds)}"
+        )
         raise InputError(what, file=domain, remedy="Choose another name, or another domain")
 
     carries = {*CARRIES} <= {*parsed.predicates}
@@ -59,7 +61,7 @@ def added(domain: Path, words: Words, note: str) -> dict[Path, tuple[str, str]]:
         else settled_parts([one for one in ("supported", "contained") if one in parsed.predicates])
     )
     old, text = texts[domain]
-    if known is None:
+    if present is None:
         predicates, rule = domain_parts(words)
         predicates = [*told, *predicates]
         text = _inside(text, "(:predicates", [f"; {note}", *predicates], domain)
@@ -95,7 +97,7 @@ def _renamed(text: str, base: str, name: str) -> str:
     word = word if word[:1].isalpha() else f"domain-{word}"
     for kind in ("domain", "stream"):
         text = text.replace(f"({kind} {base})", f"({kind} {word})")
-    return text
+    return text.replace(f"values of {base}.pddl", f"values of {name}.pddl")
 
 
 def _inside(text: str, start: str, lines: Sequence[str], file: Path) -> str:

@@ -158,7 +158,7 @@ def _arranged(
     )
     T = np.eye(4) if place is None else scene.world_pose(place).matrix
     half = np.array([0.8, 0.8] if place is None else place.size[:2]) / 2
-    standing: list[Placed] = []
+    placed: list[Placed] = []
 
     for name in (*arguments[1:], arguments[0]):
         if name not in bodies or name == owner:
@@ -170,11 +170,11 @@ def _arranged(
             spot = T[:3, :3] @ np.array([*(rng.uniform(-0.8, 0.8, 2) * half), 0.0]) + T[:3, 3]
             low = float((form.vertices @ matrix[2, :3]).min())
             matrix[:3, 3] = (*spot[:2], T[2, 3] + CONTACT_GAP - low)
-            if not standing or attempt == TRIES - 1:
+            if not placed or attempt == TRIES - 1:
                 break
-            if separations(form, matrix[None], Obstacles(standing)).min() > AIR:
+            if separations(form, matrix[None], Obstacles(placed)).min() > AIR:
                 break
-        standing.append(Placed(form, matrix))
+        placed.append(Placed(form, matrix))
         bodies[name] = replace(bodies[name], pose=Pose.from_matrix(matrix))
     return bodies
 

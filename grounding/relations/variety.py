@@ -16,6 +16,9 @@ from tamp.geometric.scene.pose import Array
 SAME_HEIGHT = 0.03
 """Heights that differ by less count as one, metres."""
 
+SAME_SPOT = 0.03
+"""Places on furniture that differ by less count as one, metres."""
+
 SAME_YAW = 0.25
 """Yaws whose spread is less count as one, radians: a hand keeps one to 8 degrees."""
 
@@ -63,7 +66,9 @@ def unvaried(
     shown = situations.rows(np.flatnonzero(holds))
     if len(shown) < 2:
         return []
-    return [*_heights(shown), *_yaws(shown, names), *_sizes(shown, names)]
+    return [
+        *_heights(shown), *_yaws(shown, names), *_sizes(shown, names), *_spots(shown, names)
+    ]  # fmt: skip
 
 
 def missing(holds: NDArray[np.bool_]) -> list[str]:
@@ -102,6 +107,16 @@ def _sizes(shown: Situations, names: Sequence[str]) -> Iterator[tuple[str, str]]
         if (np.ptp(sizes, axis=0) < SAME_SIZE * sizes.mean(axis=0)).all():
             side = " x ".join(f"{200 * one:.3g}" for one in sizes[0])
             yield f"size of {j}", f"{names[j]} was always {side} cm large: show one of another size"
+
+
+def _spots(shown: Situations, names: Sequence[str]) -> Iterator[tuple[str, str]]:
+    c, s = np.cos(shown.support[:, 1]), np.sin(shown.support[:, 1])
+    for j in range(1, shown.arguments):
+        x, y = (shown.p[:, j, :2] - shown.support[:, 2:4]).T
+        spot = np.stack([c * x + s * y, c * y - s * x])
+        if (np.ptp(spot, axis=1) < SAME_SPOT).all() and np.ptp(shown.support[:, 4]) > 0.0:
+            text = f"{names[j]} was always in the same place of the furniture: show it elsewhere"
+            yield f"place of {j}", text
 
 
 def _spread(angles: Array) -> float:

@@ -156,12 +156,12 @@ def _pairs(sampler: str) -> list[tuple[str, str]]:
     return pairs
 
 
-def relations(sampler: str, known: Registry) -> dict[str, str]:
+def relations(sampler: str, registry: Registry) -> dict[str, str]:
     """Return the sampler by relation: a bare name serves every relation that has one of this name.
 
     Args:
         sampler: As in `Case`.
-        known: All samplers by relation and name, the hand-made ones included.
+        registry: All samplers by relation and name, the hand-made ones included.
 
     Raises:
         InputError: Unknown relation, name or mode, or its weights are not there or damaged.
@@ -176,16 +176,16 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
                 python_grounding(Path(file))
                 served[relation] = f"{Path(file).resolve()}{mode}"
                 continue
-            choice = parse_choice(relation, text, known)
-            maker(relation, choice, known)()
+            choice = parse_choice(relation, text, registry)
+            maker(relation, choice, registry)()
             served[relation] = choice.text
         return served
 
     name = sampler.partition(":")[0]
-    able = [relation for relation in known if name in known[relation]]
+    able = [relation for relation in registry if name in registry[relation]]
     if not able:
         names = dict.fromkeys(
-            name for other, makers in known.items() if other != ANY_RELATION for name in makers
+            name for other, makers in registry.items() if other != ANY_RELATION for name in makers
         )
         remedy = (
             f"Of a file say which relation it serves: on={sampler}" if Path(name).suffix else ""
@@ -198,9 +198,9 @@ def relations(sampler: str, known: Registry) -> dict[str, str]:
     missing: list[InputError] = []
 
     for relation in able:
-        choice = parse_choice(relation, sampler, known)
+        choice = parse_choice(relation, sampler, registry)
         try:
-            known[relation][name]()
+            registry[relation][name]()
             made[relation] = choice.text
         except InputError as error:
             missing.append(error)

@@ -31,23 +31,23 @@ with it as usual.
 
 
 def chosen(
-    samplers: Sequence[str], known: Registry
+    samplers: Sequence[str], registry: Registry
 ) -> tuple[dict[str, Mapping[str, str]], dict[str, str]]:
     """Choose the samplers that can be run, by relation, and say why the others cannot.
 
     Args:
         samplers: As in `Case`.
-        known: All samplers by relation and name.
+        registry: All samplers by relation and name.
     """
     able: dict[str, Mapping[str, str]] = {}
     skipped: dict[str, str] = {}
     for sampler in samplers:
         name = sampler.partition(":")[0]
-        if not any(name in makers for makers in known.values()):
+        if not any(name in makers for makers in registry.values()):
             skipped[name] = "this version has no such sampler"
             continue
         try:
-            able[sampler] = relations(sampler, known)
+            able[sampler] = relations(sampler, registry)
         except InputError as error:
             skipped[name] = f"its weights are not shipped ({error})"
     return able, skipped

@@ -78,7 +78,7 @@ class Log:
             self._close()
             raise
 
-        self._known = {key(line["config"]) for line in self.lines}
+        self._logged = {key(line["config"]) for line in self.lines}
 
     def __enter__(self) -> Log:
         return self
@@ -106,16 +106,16 @@ class Log:
     def missing(self, cases: list[Case]) -> list[Case]:
         """Return the runs that are not among the results, each once."""
         wanted = {key(case.config): case for case in cases}
-        return [case for identity, case in wanted.items() if identity not in self._known]
+        return [case for identity, case in wanted.items() if identity not in self._logged]
 
     def add(self, line: Mapping[str, Any]) -> None:
         """Append a result, on the disk before this returns."""
         plain = _plain(dict(line))
         size = os.fstat(self._stream.fileno()).st_size
         try:
-            rest = json.dumps(plain, allow_nan=False).encode() + b"\n"
-            while rest:
-                rest = rest[self._stream.write(rest) :]
+            remaining = json.dumps(plain, allow_nan=False).encode() + b"\n"
+            while remaining:
+                remaining = remaining[self._stream.write(remaining) :]
             os.fsync(self._stream.fileno())
         except OSError as error:
             with contextlib.suppress(OSError):  # no half a line
@@ -125,7 +125,7 @@ class Log:
                 what, file=self.path, remedy="The same command goes on where this one was"
             ) from None
         self.lines.append(plain)
-        self._known.add(key(plain["config"]))
+        self._logged.add(key(plain["config"]))
 
     def _close(self) -> None:
         if self._new and not os.fstat(self._stream.fileno()).st_size:  # nothing came of it

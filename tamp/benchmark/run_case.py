@@ -18,12 +18,24 @@ from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
 from tamp.planner.solution import Solution
 from tamp.planner.solve import solve
+from tamp.stream import StreamKind
 
 ERROR = "ERROR"
 """The outcome of a run in which the planner or the judge raised."""
 
 VIOLATIONS = 5
 """How many of a refused plan's are kept."""
+
+
+PARTS = {
+    StreamKind.GRASPS: "sampling",
+    StreamKind.PLACEMENTS: "sampling",
+    StreamKind.IK: "ik",
+    StreamKind.TESTS: "collision",
+    StreamKind.MOTION: "motion",
+    StreamKind.OTHER: StreamKind.OTHER.value,
+}
+"""Parts of the time in a robot's planner's words, by the kinds of streams."""
 
 
 def warm_up() -> None:
@@ -103,18 +115,10 @@ def parts(solution: Solution) -> dict[str, float]:
     """Split the time by what it went to, in the words of a robot's planner; "symbolic" is all that
     is not spent in streams.
     """
-    beginnings = {
-        "sample-": "sampling",
-        "inverse-kinematics": "ik",
-        "test-": "collision",
-        "plan-": "motion",
-    }
-    times = dict.fromkeys(("symbolic", *beginnings.values(), "other streams", "timing"), 0.0)
+    times = dict.fromkeys(("symbolic", *PARTS.values(), "timing"), 0.0)
+    kinds = {one.name: one.kind for one in solution.problem.stream_task.streams}
     for name, statistics in solution.statistics.items():
-        part = next(
-            (part for start, part in beginnings.items() if name.startswith(start)), "other streams"
-        )
-        times[part] += statistics.seconds
+        times[PARTS[kinds.get(name, StreamKind.OTHER)]] += statistics.seconds
     times["timing"] = solution.seconds.get("timing", 0.0)
     times["symbolic"] = max(0.0, solution.seconds.get("total", 0.0) - sum(times.values()))
     return times

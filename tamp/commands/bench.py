@@ -50,11 +50,11 @@ def run(shown: Progress, arguments: list[str]) -> int:
 def _run(chosen: Run) -> list[dict[str, Any]]:
     from tamp.benchmark.case import labelled, relations
 
-    known = _known()
+    registry = _samplers()
     samplers: dict[str, Mapping[str, str]] = {}
     sources: dict[str, str] = {}
     for sampler in chosen.samplers:
-        served = relations(sampler, known)
+        served = relations(sampler, registry)
         label, texts = labelled(sampler, served)
         samplers[label] = served
         sources |= texts
@@ -71,7 +71,7 @@ def _fig8(chosen: Fig8) -> list[dict[str, Any]]:
     from tamp.benchmark.fig8 import FIG8
     from tamp.benchmark.fig8 import chosen as among
 
-    samplers, skipped = among(FIG8, _known())
+    samplers, skipped = among(FIG8, _samplers())
     for name, why in skipped.items():
         print(f"skipped {name}: {why}", file=sys.stderr)
     return _run_all(chosen, samplers, range(chosen.seeds), "adaptive")
@@ -142,7 +142,7 @@ def _registry() -> Registry:
     return registry()
 
 
-def _known() -> Registry:
+def _samplers() -> Registry:
     """Return all samplers by relation and name."""
     from tamp.geometric.samplers.registry import SAMPLERS
 

@@ -32,7 +32,8 @@ class Make:
 
     The arm is the chain of joints between two links. A parallel gripper of ours is bolted to its
     tip, in place of whatever hangs there, unless --gripper names the two sliding finger joints of
-    the URDF's own. docs/adding-a-robot.md goes through it.
+    the URDF's own. docs/adding-a-robot.md goes through it. What was interrupted goes on where it was
+    when it is asked for again.
 
     Exit status: 0 made, 2 bad input.
     """
@@ -54,10 +55,15 @@ class Make:
         float | None, tyro.conf.arg(metavar="M"), Above(0.0, "--opening {value} is not positive")
     ] = None
     """The gripper's largest opening, metres; ours opens 0.085."""
+    suction: Annotated[
+        float | None, tyro.conf.arg(metavar="M"), Above(0.0, "--suction {value} is not positive")
+    ] = None
+    """A suction gripper of ours instead of fingers; the radius of its cup's rim, metres."""
     force: Annotated[
-        float, tyro.conf.arg(metavar="N"), Above(0.0, "--force {value} is not positive")
-    ] = 50.0
-    """With which each finger presses, newtons."""
+        float | None, tyro.conf.arg(metavar="N"), Above(0.0, "--force {value} is not positive")
+    ] = None
+    """With which each finger presses, newtons (50), or the most that a cup pulls with (what 0.6 bar
+    do on it)."""
     payload: Annotated[
         float | None, tyro.conf.arg(metavar="KG"), Above(0.0, "--payload {value} is not positive")
     ] = None
@@ -166,9 +172,10 @@ def _wanted(options: Make, urdf: Path) -> Wanted:
         tip=tip,
         out=options.out.absolute(),
         drive=options.base,
-        fingers=options.gripper or found,
+        fingers=options.gripper or (None if options.suction else found),
         opening=options.opening,
         force=options.force,
+        suction=options.suction,
         payload=math.inf if options.payload is None else options.payload,
         mount=options.mount,
         axis=options.axis,

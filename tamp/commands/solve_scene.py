@@ -93,8 +93,8 @@ def load(request: Request) -> Loaded:
 
     if options.scene.statistics is not None:
         domain_name = problem.stream_task.task.domain.name
-        known = read_statistics(options.scene.statistics, domain_name)
-        problem = replace(problem, stream_task=replace(problem.stream_task, posteriors=known))
+        statistics = read_statistics(options.scene.statistics, domain_name)
+        problem = replace(problem, stream_task=replace(problem.stream_task, posteriors=statistics))
 
     shown.line(headline(problem))
     return Loaded(problem, load_again, request.budget.elapsed())

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tamp.errors import InputError
-from tamp.execution.circumstances import Circumstances
 from tamp.execution.disturbance import DISTURBANCES
 from tamp.execution.execute import execute
+from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.goal import classifiers_of
 from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.relations import named_classifiers
@@ -74,7 +74,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
     stored = open_plan(file, options.problem)
     if options.replan:
         _check_options(stored, names)
-    circumstances = Circumstances(
+    execution_options = ExecutionOptions(
         grasp=options.grasp,
         replanner=Replanner(stored, registry, options.time, options.seed, names, objects)
         if options.replan
@@ -85,7 +85,7 @@ def carry_out(file: Path, options: Options, registry: Registry) -> Execution:
         own=named_classifiers(stored, names, objects, registry, chosen),
         engine=options.engine,
     )
-    return execute(stored, circumstances)
+    return execute(stored, execution_options)
 
 
 def _check_options(stored: Stored, named: Mapping[str, str]) -> None:

@@ -14,8 +14,8 @@ from numpy.random import Generator
 
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
-from tamp.execution.free_space import Room
-from tamp.execution.motor_commands import Player
+from tamp.execution.free_space import FreeSpace
+from tamp.execution.motor_commands import TrajectoryPlayer
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part
 from tamp.plan.read import PlanFile, Segment
@@ -38,20 +38,20 @@ TRIES = 100
 
 
 @dataclass(frozen=True)
-class Happening:
-    """The circumstances of a disturbance: the world, the player of segments, what is expected,
+class Disturbance:
+    """The state that a disturbance changes: the world, the player of segments, what is expected,
     randomness, and the engine's name.
     """
 
     world: MotorSimulation
-    player: Player
+    player: TrajectoryPlayer
     expected: Expected
     rng: Generator
     engine: str | None = None
 
 
 @dataclass(frozen=True)
-class Scheduled:
+class ScheduledDisturbance:
     """A disturbance at a share of the time of a segment of an action; `happen` does it and says
     what was done.
     """
@@ -59,10 +59,10 @@ class Scheduled:
     action: int
     segment: int
     share: float
-    happen: Callable[[Happening], str]
+    happen: Callable[[Disturbance], str]
 
 
-def schedule(kind: str, plan: PlanFile, rng: Generator) -> Scheduled | None:
+def schedule(kind: str, plan: PlanFile, rng: Generator) -> ScheduledDisturbance | None:
     """Choose when a disturbance takes place in a plan; None when the plan has no moment for it.
 
     Raises:
@@ -75,7 +75,7 @@ def schedule(kind: str, plan: PlanFile, rng: Generator) -> Scheduled | None:
     if not possible:
         return None
     action, segment = possible[int(rng.integers(len(possible)))]
-    return Scheduled(action, segment, float(rng.uniform(0.05, 0.95)), happen)
+    return ScheduledDisturbance(action, segment, float(rng.uniform(0.05, 0.95)), happen)
 
 
 # When
@@ -117,10 +117,10 @@ def _puts(segments: tuple[Segment, ...]) -> bool:
 # What
 
 
-def _move(now: Happening) -> str:
+def _move(now: Disturbance) -> str:
     """Slide a body to another place on what it stands on."""
     world, rng = now.world, now.rng
-    with Room(world, now.engine) as room:
+    with FreeSpace(world, now.engine) as room:
         for name in rng.permutation(room.untouched):
             T = world.pose(name)
             for _ in range(TRIES):
@@ -136,14 +136,14 @@ def _move(now: Happening) -> str:
     return "nothing could be moved"
 
 
-def _drop(now: Happening) -> str:
+def _drop(now: Disturbance) -> str:
     """Open the fingers, so that the body drops."""
     held = now.world.bound or _carried(now)
     now.player.let_go()
     return f"{held} is dropped"
 
 
-def _slip(now: Happening) -> str:
+def _slip(now: Disturbance) -> str:
     """Let the body in the hand slip: it slides down between the pads and turns a little about the
     closing axis.
     """
@@ -171,10 +171,10 @@ def _slip(now: Happening) -> str:
     return f"{held} slips by {far} in the hand"
 
 
-def _remove(now: Happening) -> str:
+def _remove(now: Disturbance) -> str:
     """Remove a body that is not in the hand."""
     world = now.world
-    with Room(world, now.engine) as room:
+    with FreeSpace(world, now.engine) as room:
         choices = room.untouched
     if not choices:
         return "nothing could be taken away"
@@ -185,7 +185,7 @@ def _remove(now: Happening) -> str:
     return f"{name} is taken away"
 
 
-def _block(now: Happening) -> str:
+def _block(now: Disturbance) -> str:
     """Block a place: put a box that cannot be moved where the plan wants to put something down."""
     world, expected = now.world, now.expected
     wanted = [
@@ -196,7 +196,7 @@ def _block(now: Happening) -> str:
 
     height = OBSTACLE_SIZE[2]
 
-    with Room(world, now.engine) as room:
+    with FreeSpace(world, now.engine) as room:
         for index in now.rng.permutation(len(wanted)):
             pose = wanted[int(index)][0]
             body = next(
@@ -233,13 +233,13 @@ def _block(now: Happening) -> str:
     return "there was no room for a box"
 
 
-def _carried(now: Happening) -> str | None:
+def _carried(now: Disturbance) -> str | None:
     held = now.expected.held
     return held[0] if held is not None and now.world.near_fingers(held[0]) else None
 
 
 DISTURBANCES: dict[
-    str, tuple[Callable[[PlanFile], Iterator[Moment]], Callable[[Happening], str]]
+    str, tuple[Callable[[PlanFile], Iterator[Moment]], Callable[[Disturbance], str]]
 ] = {
     "object-moved": (_any, _move),
     "object-dropped": (_carrying, _drop),

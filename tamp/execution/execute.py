@@ -9,18 +9,18 @@ from functools import partial
 
 import numpy as np
 
-from tamp.execution.circumstances import Circumstances
 from tamp.execution.deviation import Deviation, Seen, deviations
-from tamp.execution.disturbance import Happening, Scheduled, schedule
+from tamp.execution.disturbance import Disturbance, ScheduledDisturbance, schedule
+from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
-from tamp.execution.monitoring import Watch
-from tamp.execution.motor_commands import CLOSING, Player
-from tamp.execution.observation import Observer, Truth
+from tamp.execution.monitoring import ContactMonitor
+from tamp.execution.motor_commands import CLOSING, TrajectoryPlayer
+from tamp.execution.observation import ObservedScene, Observer
 from tamp.execution.pauses import without_pauses
 from tamp.execution.relations import own_relations
 from tamp.execution.replan import Replanner
-from tamp.execution.report import Displaced, Done, Execution
+from tamp.execution.report import ActionOutcome, BodyDisplacement, Execution
 from tamp.geometric.scene.pose import Array, pose_difference
 from tamp.plan.open import Stored
 from tamp.plan.read import PlanFile, TimedAction
@@ -31,7 +31,7 @@ from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
 from tamp.verification.limits import check_ranges
 
-SETTLE = 0.5
+WAIT_AFTER_ACTION_S = 0.5
 """Seconds after an action, before it is looked at what came of it."""
 
 STILL = (0.005, 0.05)
@@ -47,12 +47,12 @@ MOVED = (0.005, 0.09)
 """Metres and radians: a body that nobody handles and that moved less is not worth a line."""
 
 
-def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execution:
+def execute(stored: Stored, execution_options: ExecutionOptions | None = None) -> Execution:
     """Carry out a plan.
 
     Args:
         stored: From `tamp.plan.open.open_plan`.
-        circumstances: How; with friction and without replanning when not given.
+        execution_options: How; with friction and without replanning when not given.
 
     Raises:
         InputError: An unknown grasp or engine, or one that is not installed; a domain that is
@@ -60,7 +60,7 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
             that needs a relation not to hold that has no classifier.
     """
     began = time.monotonic()
-    chosen = circumstances or Circumstances()
+    chosen = execution_options or ExecutionOptions()
     scene = stored.loaded.scene
     check_ranges(stored.plan, stored.robot, scene.room)
     plan, cut = without_pauses(stored.plan)
@@ -79,14 +79,14 @@ def execute(stored: Stored, circumstances: Circumstances | None = None) -> Execu
 
 class _Run:
     def __init__(
-        self, stored: Stored, chosen: Circumstances, world: MotorSimulation, observer: Observer
+        self, stored: Stored, chosen: ExecutionOptions, world: MotorSimulation, observer: Observer
     ) -> None:
         self._stored, self._chosen, self._world, self._observer = stored, chosen, world, observer
         file = source_file(stored.plan, "domain", None)
         with unquoted(stored.plan.file, plan_hashes(stored.plan)):
             self._domain = parse_domain(read_pddl(file), file)
 
-        self._player = Player(world, chosen.grasp)
+        self._player = TrajectoryPlayer(world, chosen.grasp)
         self._begin(stored.plan)
 
         loaded = stored.loaded
@@ -100,25 +100,25 @@ class _Run:
         disturbance = chosen.disturbance
         self._scheduled = schedule(disturbance, stored.plan, self._rng) if disturbance else None
 
-        self._done: list[Done] = []
+        self._done: list[ActionOutcome] = []
         self._replans = self._kept = 0
         self._explanation: tuple[str, ...] = ()
         self._event: str | None = None
-        self._known = frozenset(world.scene.bodies)
+        self._planned_for = frozenset(world.scene.bodies)
 
     def all(self) -> None:
         """Execute every action of the plan, and of those that take its place."""
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         while self._queue and not self._explanation:
             action = self._queue.pop(0)
             done = self._carry_out(action)
             if done.deviations and self._chosen.replanner is not None:
-                done = replace(done, after=self._mend(self._chosen.replanner, done))
+                done = replace(done, after=self._replan(self._chosen.replanner, done))
             self._done.append(done)
 
     def result(self) -> Execution:
         """Return the execution's outcome."""
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         truth = self._look()
         held, classifiers = self._held(), self._chosen.classifiers
         goal = judged(self._goal, self._expected, truth, held, classifiers, self._own)
@@ -141,12 +141,12 @@ class _Run:
 
     # One action
 
-    def _carry_out(self, action: TimedAction) -> Done:
+    def _carry_out(self, action: TimedAction) -> ActionOutcome:
         world, began = self._world, self._world.time
         active, load = self._active(action), self._expected.load
         before = {name: world.pose(name) for name in world.scene.movable}
         world.wake(active)
-        watch = Watch(world, active)
+        watch = ContactMonitor(world, active)
         due = self._scheduled
         if due is not None and due.action != len(self._done):
             due = None
@@ -161,12 +161,12 @@ class _Run:
                 break
 
         self._player.finish()
-        self._world.wait(SETTLE)
+        self._world.wait(WAIT_AFTER_ACTION_S)
         self._come_to_rest()
         self._expected.apply(action)
 
         truth = self._look()
-        return Done(
+        return ActionOutcome(
             name=action.name,
             objects=tuple(name for name in action.arguments if name not in self._plan.values),
             start=began,
@@ -179,9 +179,9 @@ class _Run:
             event=self._event if due else None,
         )
 
-    def _disturb(self, due: Scheduled) -> None:
+    def _disturb(self, due: ScheduledDisturbance) -> None:
         self._event = due.happen(
-            Happening(self._world, self._player, self._expected, self._rng, self._chosen.engine)
+            Disturbance(self._world, self._player, self._expected, self._rng, self._chosen.engine)
         )
 
     def _active(self, action: TimedAction) -> str | None:
@@ -193,13 +193,15 @@ class _Run:
     def _scene_name(self, word: str) -> str | None:
         return next((name for name in self._world.scene.bodies if name.lower() == word), None)
 
-    def _displaced(self, before: Mapping[str, Array], handled: set[str | None]) -> list[Displaced]:
-        found: list[Displaced] = []
+    def _displaced(
+        self, before: Mapping[str, Array], handled: set[str | None]
+    ) -> list[BodyDisplacement]:
+        found: list[BodyDisplacement] = []
         for name, T in before.items():
             if name not in handled and name in self._world.solids:
                 moved, turned = pose_difference(T, self._world.pose(name))
                 if moved > MOVED[0] or turned > MOVED[1]:
-                    found.append(Displaced(name, moved, turned))
+                    found.append(BodyDisplacement(name, moved, turned))
         return found
 
     # What is seen
@@ -218,22 +220,24 @@ class _Run:
         between = (name for name in world.scene.movable if len(touching.get(name, ())) == 2)
         return next(between, None)
 
-    def _look(self) -> Truth:
+    def _look(self) -> ObservedScene:
         world = self._world
-        self._observer.become(world.scene)
+        self._observer.renew(world.scene)
         poses = {name: world.pose(name) for name in world.scene.movable}
-        return self._observer.see(poses, world.actual()[:3], self._held())
+        return self._observer.observe(poses, world.actual()[:3], self._held())
 
-    def _deviations(self, truth: Truth, active: str | None) -> list[Deviation]:
+    def _deviations(self, truth: ObservedScene, active: str | None) -> list[Deviation]:
         world, expected = self._world, self._expected
         poses = {name: world.pose(name) for name in world.scene.movable}
         seen = Seen(poses, self._held(), world.tool(), truth.facts)
-        new = frozenset(world.scene.bodies) - self._known
-        known = {name: T for name, T in expected.poses.items() if name in self._known}
-        words = {name.lower() for name in known}
+        new = frozenset(world.scene.bodies) - self._planned_for
+        poses_expected = {
+            name: T for name, T in expected.poses.items() if name in self._planned_for
+        }
+        words = {name.lower() for name in poses_expected}
         facts = frozenset(fact for fact in expected.facts if fact[1] in words)
         facts |= self._own.missed(truth, self._held(), expected)
-        return list(deviations(known, expected.held, facts, seen, active, new))
+        return list(deviations(poses_expected, expected.held, facts, seen, active, new))
 
     def _come_to_rest(self) -> None:
         """Wait for bodies that fall or roll, not for ever."""
@@ -253,7 +257,7 @@ class _Run:
         self._plan, self._queue = plan, list(plan.actions)
         self._expected = Expected(plan, self._domain, self._world.scene)
 
-    def _mend(self, replanner: Replanner, done: Done) -> str:
+    def _replan(self, replanner: Replanner, done: ActionOutcome) -> str:
         world, held, grasp = self._world, self._held(), None
         if held is None:  # a hand that closed on nothing
             self._player.let_go()
@@ -267,10 +271,11 @@ class _Run:
             return self._explanation[0]
 
         truth, found = self._look(), done.deviations
-        mended = replanner.mend(truth, grasp, self._plan, self._queue, found, self._expected)
+        expected, goal = self._expected, self._goal
+        mended = replanner.replan(truth, grasp, self._plan, self._queue, found, expected, goal)
         if mended.keeps:
             self._kept += 1
-            self._known = frozenset(world.scene.bodies)
+            self._planned_for = frozenset(world.scene.bodies)
             self._expected.accept({name: world.pose(name) for name in world.scene.movable})
             return "the rest of the plan still holds"
 
@@ -281,6 +286,6 @@ class _Run:
             return f"no plan from here: {'; '.join(mended.explanation)}"
 
         self._replans += 1
-        self._known = frozenset(world.scene.bodies)
+        self._planned_for = frozenset(world.scene.bodies)
         self._begin(mended.plan)
         return f"planned anew: {len(mended.plan.actions)} actions"

@@ -18,7 +18,7 @@ APART = 0.005
 """Metres of air to other bodies that a free place has."""
 
 
-class Room:
+class FreeSpace:
     """A copy of the world without time and robot, in which places are tried. Use it as a context
     manager.
     """
@@ -34,7 +34,7 @@ class Room:
         ]
         self._supports = Supports(self._copy)
 
-    def __enter__(self) -> Room:
+    def __enter__(self) -> FreeSpace:
         return self
 
     def __exit__(self, *_: object) -> None:

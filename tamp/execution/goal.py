@@ -8,16 +8,18 @@ from collections.abc import Callable, Iterator, Mapping
 from tamp.errors import InputError
 from tamp.execution.deviation import FAR, TURNED
 from tamp.execution.expected import RELATIONS, Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
-from tamp.geometric.samplers.choice import ANY_RELATION, Registry
+from tamp.geometric.samplers.choice import Registry
+from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Classifier
 from tamp.geometric.scene.classifier import Unanswered, probability
 from tamp.geometric.scene.pose import pose_difference
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.relations import POSE
 from tamp.symbolic.pddl.structs import Atom, Formula, Not
-from tamp.verification.formulas import flat, show
+from tamp.verification.formulas import flat
 from tamp.verification.semantics import Semantics, State
 
 NONE = Own({})
@@ -29,7 +31,7 @@ FLUENTS = frozenset({"holding", "hand-empty", "at-pose"})
 def judged(
     goal: Formula,
     expected: Expected,
-    truth: Truth,
+    truth: ObservedScene,
     held: str | None,
     classifiers: Mapping[str, tuple[str, Classifier]],
     own: Own = NONE,
@@ -54,8 +56,8 @@ def judged(
     }
 
     there = dict(_in_place(expected, truth, held))
-    standing = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
-    at = {body: f"{body} seen" for body in standing} | there
+    placed = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
+    at = {body: f"{body} seen" for body in placed} | there
     facts |= {("at-pose", body, pose) for body, pose in at.items()}
     for seen in own.observe(truth, held, expected, at).values():
         facts = (facts - seen.fails) | seen.holds
@@ -72,7 +74,7 @@ def judged(
         holds = semantics.holds(part, state)
         name, probability = _classified(part, truth, held, said)
         why = None if holds else _reason(part, truth, held) or _moved(part, there, expected, own)
-        found.append(GoalFact(show(part), holds, why, name, probability))
+        found.append(GoalFact(to_text(part), holds, why, name, probability))
     return tuple(found)
 
 
@@ -82,8 +84,8 @@ def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
     """
     found: dict[str, tuple[str, Classifier]] = {}
     for relation, makers in registry.items():
-        if relation == ANY_RELATION:
-            continue
+        if relation not in SAMPLERS:
+            continue  # a relation of the user's own has the classifier that the plan names
         for name, make in makers.items():
             classifier = _made(make)
             if classifier is not None:
@@ -101,7 +103,10 @@ def _made(make: Callable[[], object]) -> Classifier | None:
 
 
 def _classified(
-    part: Formula, truth: Truth, held: str | None, classifiers: Mapping[str, tuple[str, Classifier]]
+    part: Formula,
+    truth: ObservedScene,
+    held: str | None,
+    classifiers: Mapping[str, tuple[str, Classifier]],
 ) -> tuple[str | None, float | None]:
     if isinstance(part, Not):
         part = part.body
@@ -127,7 +132,9 @@ def _with_poses(semantics: Semantics, at: Mapping[str, str]) -> Semantics:
     return Semantics(domain, {**semantics.objects, **new}) if new else semantics
 
 
-def _in_place(expected: Expected, truth: Truth, held: str | None) -> Iterator[tuple[str, str]]:
+def _in_place(
+    expected: Expected, truth: ObservedScene, held: str | None
+) -> Iterator[tuple[str, str]]:
     """Yield the bodies and poses, in PDDL's names, of those that are seen where the plan has
     them.
     """
@@ -154,7 +161,7 @@ def _moved(part: Formula, there: Mapping[str, str], expected: Expected, own: Own
     return f"{gone[0]} is not where the plan put it" if gone else None
 
 
-def _reason(part: Formula, truth: Truth, held: str | None) -> str | None:
+def _reason(part: Formula, truth: ObservedScene, held: str | None) -> str | None:
     if not isinstance(part, Atom) or not part.terms:
         return None
     body = part.terms[0]

@@ -17,7 +17,7 @@ FELT = 1.0
 
 
 @dataclass(frozen=True)
-class Touch:
+class ContactEvent:
     """Two things that should not touch: names of a link or body and a body, and the most that was
     felt, newtons.
     """
@@ -28,7 +28,7 @@ class Touch:
 
 
 @dataclass
-class Watch:
+class ContactMonitor:
     """Looks at the world now and then during one action.
 
     Attributes:
@@ -56,15 +56,15 @@ class Watch:
         for pair, force in self.world.touches().items():
             self.touches[pair] = max(self.touches.get(pair, 0.0), force)
 
-    def unwanted(self) -> tuple[Touch, ...]:
+    def unwanted(self) -> tuple[ContactEvent, ...]:
         """Return the unwanted contacts at the action's end.
 
         A body may touch what it touches before or after the action: that is what it rests on. The
         hand may touch what it handles.
         """
-        resting = self._before | frozenset(self.world.touches())
+        borne = self._before | frozenset(self.world.touches())
         robot = self.world.robot_links
-        found: list[Touch] = []
+        found: list[ContactEvent] = []
         for (first, second), force in sorted(self.touches.items()):
             if first in robot:
                 fine = second == self.active and first in (
@@ -72,7 +72,7 @@ class Watch:
                     self.world.hand_link,
                 )
             else:
-                fine = (first, second) in resting or first == FLOOR_NAME == second
+                fine = (first, second) in borne or first == FLOOR_NAME == second
             if not fine and force >= FELT:
-                found.append(Touch(first, second, force))
+                found.append(ContactEvent(first, second, force))
         return tuple(found)

@@ -10,7 +10,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
-from tamp.execution.monitoring import EVERY, Watch
+from tamp.execution.monitoring import EVERY, ContactMonitor
 from tamp.plan.read import Segment
 from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 
@@ -23,7 +23,7 @@ REST = 0.15
 Event = Callable[[], None]
 
 
-class Player:
+class TrajectoryPlayer:
     """Carries out segments one after the other.
 
     Args:
@@ -44,7 +44,7 @@ class Player:
         self,
         segment: Segment,
         body: str | None,
-        watch: Watch,
+        watch: ContactMonitor,
         event: Event | None = None,
         at: float = 0.0,
         guard: str | None = None,
@@ -80,7 +80,12 @@ class Player:
         world.squeezing, world.opening = False, world.widest
 
     def _follow(
-        self, segment: Segment, watch: Watch, event: Event | None, at: float, guard: str | None
+        self,
+        segment: Segment,
+        watch: ContactMonitor,
+        event: Event | None,
+        at: float,
+        guard: str | None,
     ) -> bool:
         world = self._world
         first = 0 if segment.part == "base" else 3
@@ -112,25 +117,27 @@ class Player:
         self._wait(REST, watch)
         return step == count - 1
 
-    def _finger(self, segment: Segment, body: str | None, watch: Watch) -> None:
+    def _finger(self, segment: Segment, body: str | None, watch: ContactMonitor) -> None:
         world = self._world
         lasts = max(float(segment.times[-1]), CLOSING)
         if segment.detach is not None and world.bound is not None:
             self._passing = world.bound
             world.detach()
         world.opening = float(segment.opening[-1])
-        world.squeezing = segment.attach is not None and self._grasp == "friction"
+        # A cup's vacuum is a constraint in either way: friction alone holds nothing from above.
+        binds = self._grasp == "constraint" or not world.finger_links
+        world.squeezing = segment.attach is not None and not binds
         self._wait(lasts, watch)
-        if segment.attach is not None and self._grasp == "constraint" and self._between(body):
+        if segment.attach is not None and binds and self._between(body):
             world.attach(body)
 
     def _between(self, body: str | None) -> TypeGuard[str]:
-        """Check whether the body is where the fingers close: what is not there is not held by a
-        constraint either.
+        """Check whether the body is where the fingers close, or at the cup: what is not there is
+        not held by a constraint either.
         """
         return body is not None and body in self._world.solids and self._world.near_fingers(body)
 
-    def _wait(self, seconds: float, watch: Watch) -> None:
+    def _wait(self, seconds: float, watch: ContactMonitor) -> None:
         for step in range(round(seconds * COMMANDS_PER_SECOND)):
             self._world.step_motors()
             if step % EVERY == 0:

@@ -30,7 +30,7 @@ AWAY = Pose((500.0, 0.0, 0.0)).matrix
 
 
 @dataclass(frozen=True)
-class Truth:
+class ObservedScene:
     """The scene as it is seen.
 
     Attributes:
@@ -64,27 +64,27 @@ class Observer:
     def __exit__(self, *_: object) -> None:
         self._world.close()
 
-    def become(self, scene: Scene) -> None:
+    def renew(self, scene: Scene) -> None:
         """Rebuild the observer when bodies were added or taken away."""
         if self._scene.bodies.keys() != scene.bodies.keys():
             self._world.close()
             self.__init__(scene, self._engine)
 
-    def see(self, poses: Mapping[str, Array], base: Array, held: str | None) -> Truth:
+    def observe(self, poses: Mapping[str, Array], base: Array, held: str | None) -> ObservedScene:
         """Observe the truth about movable bodies at their T_world_body (4, 4), the base (3,) and
         the body in the hand.
         """
-        standing = [name for name in self._scene.movable if name in poses and name != held]
+        placed = [name for name in self._scene.movable if name in poses and name != held]
         if held is not None:
             self._seen.pop(held, None)
             self._world.place(held, AWAY)
-        self._place(poses, standing)
+        self._place(poses, placed)
         bodies = dict(self._scene.bodies)
         facts: set[Fact] = set()
         reasons: dict[Fact, str] = {}
-        for name in standing:
+        for name in placed:
             stand = self._supports.stand(name)
-            support = self._feel(name, stand, facts, reasons)
+            support = self._classify_support(name, stand, facts, reasons)
             pose = Pose.from_matrix(self._world.pose(name))
             bodies[name] = replace(bodies[name], pose=pose, support=support, carriers=())
         if held is not None:
@@ -92,14 +92,14 @@ class Observer:
         x, y, yaw = (float(value) for value in base)
         robot = replace(self._scene.robot, base=(x, y, yaw))
         scene = replace(self._scene, bodies=MappingProxyType(bodies), robot=robot)
-        return Truth(scene, frozenset(facts), reasons)
+        return ObservedScene(scene, frozenset(facts), reasons)
 
-    def _place(self, poses: Mapping[str, Array], standing: list[str]) -> None:
+    def _place(self, poses: Mapping[str, Array], placed: list[str]) -> None:
         """Put bodies where they are seen, the planner's air under those that rest: physics presses
         them together.
         """
         moved = []
-        for name in standing:
+        for name in placed:
             T = poses[name]
             before = self._seen.get(name)
             if (
@@ -116,7 +116,7 @@ class Observer:
                 rise = float(np.clip(CONTACT_GAP - stand.gap, -LIFTED, LIFTED))
                 self._world.place(name, _raised(self._world.pose(name), rise))
 
-    def _feel(
+    def _classify_support(
         self, name: str, stand: SupportContact, facts: set[Fact], reasons: dict[Fact, str]
     ) -> str | None:
         """Add what is so about a body; what it stands on as the scene has it, None for the floor

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.execution.expected import Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry, maker, parse_choice
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
@@ -18,7 +18,13 @@ from tamp.plan.open import Stored
 from tamp.plan.sources import source_file
 from tamp.relations.observed import Observation, moved, observe
 from tamp.symbolic.pddl.complement import atoms_of_conditions
-from tamp.symbolic.pddl.relations import Relation, needed_false, relation_names, relation_of
+from tamp.symbolic.pddl.relations import (
+    SAMPLE,
+    Relation,
+    needed_false,
+    relation_names,
+    relation_of,
+)
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 from tamp.verification.trust import read_streams, streams_file
 
@@ -40,7 +46,7 @@ class Own:
     trusted: tuple[str, ...] = ()
 
     def observe(
-        self, truth: Truth, held: str | None, expected: Expected, at: Mapping[str, str]
+        self, truth: ObservedScene, held: str | None, expected: Expected, at: Mapping[str, str]
     ) -> dict[str, Observation]:
         """Observe what the classifiers say of what is seen, by relation; `at` names the poses of
         bodies that stand.
@@ -54,13 +60,13 @@ class Own:
             for name, (relation, _, classifier) in self.asked.items()
         }
 
-    def missed(self, truth: Truth, held: str | None, expected: Expected) -> frozenset[Fact]:
+    def missed(self, truth: ObservedScene, held: str | None, expected: Expected) -> frozenset[Fact]:
         """Return relations that should hold by the plan and do not, as (relation, *arguments) in
         PDDL's names.
         """
         at = {row[0]: row[1] for row in expected.state.all("at-pose") if len(row) == 2}
-        standing = {name.lower() for name in truth.scene.movable if name != held}
-        there = {body: pose for body, pose in at.items() if body in standing}
+        placed = {name.lower() for name in truth.scene.movable if name != held}
+        there = {body: pose for body, pose in at.items() if body in placed}
         seen = self.observe(truth, held, expected, there)
         return frozenset(
             (name, *words)
@@ -100,7 +106,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
     asked: dict[str, tuple[Relation, str, Classifier]] = {}
     trusted: list[str] = []
     bare = replace(domain, actions=())
-    rests = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
+    asked_by_rules = {atom.predicate for atom, _ in atoms_of_conditions(bare, goal)}
 
     for name in _own_names(stored, streams, classifiers):
         relation = relation_of(streams, domain, name)
@@ -108,7 +114,7 @@ def own_relations(stored: Stored, domain: Domain, goal: Formula, classifiers: Na
             continue
         if name in classifiers:
             asked[name] = (relation, *classifiers[name])
-        elif relation.predicates & rests:
+        elif relation.predicates & asked_by_rules:
             atom = needed_false(bare, goal, relation.predicates)
             if atom is not None:
                 raise _unknown(
@@ -164,12 +170,12 @@ def named_classifiers(
 
 def _own_names(stored: Stored, streams: StreamFile, classifiers: Named) -> Iterable[str]:
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
-    sampled = [stream.name.removeprefix("sample-") for stream in streams.streams if stream.outputs]
-    known = {*planned, *classifiers, *sampled}
+    sampled = [stream.name.removeprefix(SAMPLE) for stream in streams.streams if stream.outputs]
+    named = {*planned, *classifiers, *sampled}
     return [
         name
         for name in relation_names(streams)
-        if name in known and name not in SAMPLERS and f"sample-{name}" not in STREAMS
+        if name in named and name not in SAMPLERS and f"sample-{name}" not in STREAMS
     ]
 
 

@@ -5,7 +5,6 @@ not.
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -15,7 +14,7 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import RELATIONS, Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry
 from tamp.geometric.scene.pose import Array, Pose, pose_difference
 from tamp.geometric.values import Grasp
@@ -35,7 +34,7 @@ grasp to serve.
 
 
 @dataclass(frozen=True)
-class Mended:
+class Replanned:
     """The result of replanning: the rest of the plan is kept, else a new plan, else why there is
     none.
     """
@@ -75,27 +74,29 @@ class Replanner:
         """Return the grasp of what is in the hand, as the planner has it."""
         return Grasp(body, Pose.from_matrix(T_tool_body), opening)
 
-    def mend(
+    def replan(
         self,
-        truth: Truth,
+        truth: ObservedScene,
         grasp: Grasp | None,
         plan: PlanFile,
-        rest: Sequence[TimedAction],
+        remaining: Sequence[TimedAction],
         found: Sequence[Deviation],
         expected: Expected,
-    ) -> Mended:
+        goal: Formula,
+    ) -> Replanned:
         """Keep the rest of the plan or plan anew.
 
         Args:
             truth: What is seen.
             grasp: What is in the hand.
             plan: The plan so far.
-            rest: Its actions that are still to come.
+            remaining: Its actions that are still to come.
             found: What is not as expected.
             expected: What is expected now.
+            goal: The problem's: of bodies that are gone, those that it names are needed.
         """
         loaded = self._stored.loaded
-        asked = set(re.findall(r"[^\s()]+", loaded.goal.text.lower()))
+        asked = {term for atom, _ in signed_atoms(goal) for term in atom.terms}
         gone = sorted(
             name
             for name in loaded.scene.bodies.keys() - truth.scene.bodies.keys()
@@ -103,17 +104,17 @@ class Replanner:
         )
 
         if gone:
-            return Mended(
+            return Replanned(
                 explanation=tuple(f"{name} is gone, and the goal needs it" for name in gone)
             )
 
         try:
             problem = self._problem(truth, grasp)
         except InputError as error:  # the robot touches something where it stands
-            return Mended(explanation=(error.message,))
+            return Replanned(explanation=(error.message,))
 
-        if self._holds(problem, truth, plan, rest, found, expected):
-            return Mended(keeps=True)
+        if self._holds(problem, truth, plan, remaining, found, expected):
+            return Replanned(keeps=True)
 
         seed, self._seed = self._seed, self._seed + 1
         solution = solve(
@@ -121,10 +122,10 @@ class Replanner:
         )
 
         if not solution.solved:
-            return Mended(explanation=(solution.outcome.value, *solution.explanation))
-        return Mended(plan=read_plan(json.loads(plan_text(solution))))
+            return Replanned(explanation=(solution.outcome.value, *solution.explanation))
+        return Replanned(plan=read_plan(json.loads(plan_text(solution))))
 
-    def _problem(self, truth: Truth, grasp: Grasp | None) -> Problem:
+    def _problem(self, truth: ObservedScene, grasp: Grasp | None) -> Problem:
         plan = self._stored.plan
         streams = plan.source("streams")
         return load_problem(
@@ -141,9 +142,9 @@ class Replanner:
     def _holds(
         self,
         problem: Problem,
-        truth: Truth,
+        truth: ObservedScene,
         plan: PlanFile,
-        rest: Sequence[TimedAction],
+        remaining: Sequence[TimedAction],
         found: Sequence[Deviation],
         expected: Expected,
     ) -> bool:
@@ -160,7 +161,7 @@ class Replanner:
 
         later = {
             segment.attach.body.lower()
-            for action in rest
+            for action in remaining
             for segment in action.segments
             if segment.attach
         }
@@ -178,7 +179,7 @@ class Replanner:
         names = {name.lower(): name for name in truth.scene.bodies}
         should = expected.poses
 
-        for segment in (segment for action in rest for segment in action.segments):
+        for segment in (segment for action in remaining for segment in action.segments):
             if segment.attach is not None:
                 name = names.get(segment.attach.body)
                 if name is None or name not in poses:

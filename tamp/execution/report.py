@@ -9,11 +9,11 @@ from typing import Any
 
 from tamp.errors import printable
 from tamp.execution.deviation import Deviation
-from tamp.execution.monitoring import Touch
+from tamp.execution.monitoring import ContactEvent
 
 
 @dataclass(frozen=True)
-class Displaced:
+class BodyDisplacement:
     """A body that an action moved without meaning to: metres and radians."""
 
     body: str
@@ -22,7 +22,7 @@ class Displaced:
 
 
 @dataclass(frozen=True)
-class Done:
+class ActionOutcome:
     """One action as it went.
 
     Attributes:
@@ -45,8 +45,8 @@ class Done:
     seconds: float
     base: float
     arm: float
-    touches: tuple[Touch, ...] = ()
-    displaced: tuple[Displaced, ...] = ()
+    touches: tuple[ContactEvent, ...] = ()
+    displaced: tuple[BodyDisplacement, ...] = ()
     deviations: tuple[Deviation, ...] = ()
     event: str | None = None
     after: str | None = None
@@ -91,7 +91,7 @@ class Execution:
     name: str
     grasp: str
     seed: int
-    actions: tuple[Done, ...]
+    actions: tuple[ActionOutcome, ...]
     goal: tuple[GoalFact, ...]
     reached: bool
     replans: int = 0
@@ -144,7 +144,7 @@ class Execution:
         return {"format": "tamp-execution", "version": 1, **asdict(self), "kinds": self.kinds}
 
 
-def _action(number: int, action: Done) -> list[str]:
+def _action(number: int, action: ActionOutcome) -> list[str]:
     what = f"{action.name:<6} {' '.join(action.objects)}"
     lag = f"lags {1000 * action.base:.1f} mm, {math.degrees(action.arm):.2f}°"
     lines = [f"  {number:2d}  {what:<34} {action.seconds:5.1f} s   {lag}"]

@@ -50,7 +50,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     arm, fingers = _names(robot)
     joints = (*BASE_JOINTS, *arm, *fingers)
     column = {name: at for at, name in enumerate(joints)}
-    standing = _start(plan, robot)
+    initial = _start(plan, robot)
     file = io.StringIO()
     writer = csv.writer(file, lineterminator="\n")
     writer.writerow(
@@ -64,8 +64,8 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
                 stretch.times, stretch.positions, stretch.velocities, strict=True
             ):  # fmt: skip
                 rates = np.zeros(len(joints))
-                standing[moving], rates[moving] = positions, velocities
-                numbers = (*_rounded(standing), *_rounded(rates))
+                initial[moving], rates[moving] = positions, velocities
+                numbers = (*_rounded(initial), *_rounded(rates))
                 holding = stretch.holding or ""
                 writer.writerow(
                     (
@@ -136,8 +136,8 @@ def _start(plan: PlanFile, robot: Robot) -> Array:
         for fact in plan.initial
         if fact[0] == predicate and len(fact) == 2
     ]
-    known = [value.data for value in places if value is not None and value.type == "base-conf"]
-    base = known[0] if known else np.zeros(3)
+    confs = [value.data for value in places if value is not None and value.type == "base-conf"]
+    base = confs[0] if confs else np.zeros(3)
     arm, opening = np.array(robot.home), robot.opening
     segments = [segment for action in plan.actions for segment in action.segments]
     for segment in reversed(segments):

@@ -134,25 +134,25 @@ def goal_formula(goal: Any, domain: Domain, names: Names) -> Formula:
 
 
 def _formula(item: Any, domain: Domain, names: Names, bound: tuple[str, ...]) -> Formula:
-    head, rest = _parts(item, "a condition")
+    head, tail = _parts(item, "a condition")
     if head not in CONNECTIVES:
         if head != "=" and head not in domain.types:
-            _check(head, len(rest), domain, domain.predicates, "predicate", item)
-        return Atom(head, tuple(_term(term, names, bound) for term in rest))
+            _check(head, len(tail), domain, domain.predicates, "predicate", item)
+        return Atom(head, tuple(_term(term, names, bound) for term in tail))
 
     wanted = {"not": 1, "imply": 2, "exists": 2, "forall": 2}.get(head)
-    if wanted is not None and len(rest) != wanted:
+    if wanted is not None and len(tail) != wanted:
         raise InputError(
-            f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(rest)}: {item!r}"
+            f"'{head}' takes {wanted} part{'s' if wanted > 1 else ''}, found {len(tail)}: {item!r}"
         )
 
     if head in ("exists", "forall"):
-        parameters = _parameters(rest[0], domain)
+        parameters = _parameters(tail[0], domain)
         inner = (*bound, *(parameter.name for parameter in parameters))
-        body = _formula(rest[1], domain, names, inner)
+        body = _formula(tail[1], domain, names, inner)
         return Exists(parameters, body) if head == "exists" else Forall(parameters, body)
 
-    parts = tuple(_formula(part, domain, names, bound) for part in rest)
+    parts = tuple(_formula(part, domain, names, bound) for part in tail)
 
     match head:
         case "and":
@@ -198,23 +198,23 @@ def _term(term: Any, names: Names, bound: tuple[str, ...]) -> str:
 def _parts(item: Any, what: str) -> tuple[str, tuple[Any, ...]]:
     if not isinstance(item, tuple | list) or not item or not isinstance(item[0], str):
         raise InputError(f"expected {what} such as ('On', 'mug', 'table'), found {item!r}")
-    head, *rest = item
-    return str(head).lower(), tuple(rest)
+    head, *tail = item
+    return str(head).lower(), tuple(tail)
 
 
-def _unknown(name: str, known: Mapping[str, Any]) -> bool:
+def _unknown(name: str, declared: Mapping[str, Any]) -> bool:
     """Check that it is none of them, nor looks like one of them misspelt."""
-    return name not in known and closest(name, known) is None
+    return name not in declared and closest(name, declared) is None
 
 
 def _check(
-    name: str, count: int, domain: Domain, known: Mapping[str, Any], what: str, item: Any
+    name: str, count: int, domain: Domain, declared: Mapping[str, Any], what: str, item: Any
 ) -> None:
-    if name not in known:
+    if name not in declared:
         raise InputError(
-            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=known
+            f"unknown {what} '{name}' in {item!r}", file=domain.file, found=name, choices=declared
         )
-    wanted = len(known[name].parameters)
+    wanted = len(declared[name].parameters)
     if wanted != count:
         raise InputError(
             f"'{name}' takes {wanted} argument{'' if wanted == 1 else 's'}, found {count}: {item!r}"

@@ -165,7 +165,7 @@ def _bound_streams(
 def _bound(stream: Stream, domain: Domain, function: Any) -> BoundStream:
     types = output_types(stream, domain)
     outputs = tuple(types[name] for name in stream.outputs)
-    return BoundStream(stream, stream_function(stream, function), outputs, may_advise=False)
+    return BoundStream(stream, stream_function(stream, function), outputs)
 
 
 def _always(*inputs: Any) -> bool:
@@ -192,7 +192,7 @@ def _tests(
         stream = Stream(
             f"test-{name}", predicate.inputs, predicate.domain, (), certified, (), predicate.place
         )
-        made.append(BoundStream(stream, test, (), may_advise=False))
+        made.append(BoundStream(stream, test, ()))
     return made[0], made[1]
 
 
@@ -209,9 +209,7 @@ def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
 
     name = complement_name(atom.predicate, domain)
     certified = (Atom(name, atom.terms, atom.place),)
-    return BoundStream(
-        replace(stream, name=f"test-{name}", certified=certified), fails, (), may_advise=False
-    )
+    return BoundStream(replace(stream, name=f"test-{name}", certified=certified), fails, ())
 
 
 def _joined(files: Sequence[StreamFile]) -> StreamFile:
@@ -254,12 +252,12 @@ def _check_map(
                 found=one.name,
                 choices=functions,
             )
-    known = [one.name for one in declared]
+    names = [one.name for one in declared]
     for name in functions:
-        if name not in known:
+        if name not in names:
             message = f"the stream map has '{name}', which no stream is called"
-            if closest(name, known) is not None:
-                raise InputError(message, found=name, choices=known)
+            if closest(name, names) is not None:
+                raise InputError(message, found=name, choices=names)
             yield message
 
 

@@ -18,9 +18,9 @@ def check_robot(plan: PlanFile, robot: Robot) -> None:
     Raises:
         InputError: Which file has changed; or which rows, and how many positions they have.
     """
-    known = {source.path.name: source.sha256 for source in plan.sources if source.role == "robot"}
+    hashes = {source.path.name: source.sha256 for source in plan.sources if source.role == "robot"}
     for file in robot.files:
-        if file.name in known and sha256(file) != known[file.name]:
+        if file.name in hashes and sha256(file) != hashes[file.name]:
             raise InputError(
                 f"the robot's {file} is not the one that the plan was made with",
                 file=plan.file,

@@ -54,10 +54,10 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         grasp = _value(state, domain, f"{held}_held", "grasp", holding)
         facts += [("grasp", held, grasp), ("holding", held, grasp)]
 
-    standing = [name for name in scene.movable if holding is None or name != holding.body]
+    placed = [name for name in scene.movable if holding is None or name != holding.body]
     poses = {
         name: _value(state, domain, f"{name.lower()}_start", "pose", scene.bodies[name].pose)
-        for name in standing
+        for name in placed
     }
     for name, pose in poses.items():
         word = name.lower()

@@ -9,7 +9,7 @@ from tamp.errors import InputError
 from tamp.symbolic.pddl.structs import Stream
 
 
-def without_function(stream: Stream, file: str | None, known: Mapping[str, Any]) -> InputError:
+def without_function(stream: Stream, file: str | None, functions: Mapping[str, Any]) -> InputError:
     """Return the error of a stream that nothing serves; it says how to serve it."""
     place = stream.place
     return InputError(
@@ -18,7 +18,7 @@ def without_function(stream: Stream, file: str | None, known: Mapping[str, Any])
         line=place.line if place else None,
         column=place.column if place else None,
         found=stream.name,
-        choices=known,
+        choices=functions,
         remedy=_remedy(stream.name),
     )
 

@@ -19,6 +19,7 @@ from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.user_relations import fails_relation
 from tamp.planner.served import Served
 from tamp.relations.observed import Observation, moved, observe, refuse_silent
+from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.complement import atoms_of_conditions, complement_name, with_complements
 from tamp.symbolic.pddl.relations import (
@@ -136,7 +137,10 @@ def decided(
     false = {(names[fact[0]], *fact[1:]) for name in negated for fact in seen[name].fails}
     streams = tuple(
         BoundStream(
-            failing(one, domain), partial(fails_relation, context, classifier=classifiers[name]), ()
+            failing(one, domain),
+            partial(fails_relation, context, classifier=classifiers[name]),
+            (),
+            kind=StreamKind.TESTS,
         )
         for name, one in negated.items()
     )

@@ -128,21 +128,28 @@ def load_problem(
     _check_start(files.loaded, context)
 
     given = functions or {}
-    known_functions = {**served.functions(files.streams, files.domain), **given}
+    functions_by_name = {**served.functions(files.streams, files.domain), **given}
     unasked = unasked_streams(files.streams, files.domain, goal)
-    bound = bind(files.streams, files.domain, context, known_functions, unasked)
-    known = decided(served, files.streams, files.domain, goal, start.objects, start.facts, context)
+    bound = bind(files.streams, files.domain, context, functions_by_name, unasked)
+    decision = decided(
+        served, files.streams, files.domain, goal, start.objects, start.facts, context
+    )
     costs = bind_costs(files.streams, context, given)
 
     name = files.loaded.scene.name
     task = Task(
-        name, known.domain, start.objects, frozenset(start.facts) | known.facts, known.goal, {}
+        name,
+        decision.domain,
+        start.objects,
+        frozenset(start.facts) | decision.facts,
+        decision.goal,
+        {},
     )
     return Problem(
         name=name,
         scene=files.loaded.scene,
         context=context,
-        stream_task=StreamTask(task, (*bound, *known.streams), start.values, costs),
+        stream_task=StreamTask(task, (*bound, *decision.streams), start.values, costs),
         goal=" ".join(files.loaded.goal.text.split()),
         files={**files.by_role(), "robot": _own_robot(context.robot)},
         samplers={relation: choice.text for relation, choice in served.choices.items()},
@@ -150,11 +157,11 @@ def load_problem(
             *files.loaded.warnings,
             *unused_functions(files.streams, given),
             *lint(files.domain, files.streams, goal, start.facts),
-            *known.warnings,
+            *decision.warnings,
         ),
-        classifiers=known.classifiers,
-        relations=known.relations,
-        complements=known.complements,
+        classifiers=decision.classifiers,
+        relations=decision.relations,
+        complements=decision.complements,
         robot_given=robot is not None,
     )
 

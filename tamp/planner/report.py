@@ -11,6 +11,7 @@ from tamp.planner.problem import Problem
 from tamp.planner.relation_words import relation_words
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
+from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.pddl.structs import And
 
@@ -20,17 +21,8 @@ WIDTH = 110
 MOST = 8
 """Lines about what failed."""
 
-STANDING = ("supported", "contained")
+SUPPORT_PREDICATES = ("supported", "contained")
 """Predicates that say where a body is; one of the user's may speak of a place where it is not."""
-
-PARTS = {
-    "motion": ("plan-",),
-    "ik": ("inverse-kinematics", "inverse-kinematics-here"),
-    "grasps": ("sample-grasp",),
-    "placements": ("sample-",),
-    "tests": ("test-",),
-}
-"""Parts of the time in the summary, by the beginning of the streams' names; the first that fits."""
 
 
 APART = ("search", "timing", "explaining", "other tries")
@@ -141,12 +133,14 @@ def _places(solution: Solution) -> dict[tuple[str, str], str]:
     """Map body and pose names to the place: what a fact such as (supported mug p1 table) says."""
     problem = solution.problem
     scene = problem.scene
-    known = {place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)}
+    scene_names = {
+        place.lower(): place for place in (*scene.surfaces, *scene.cavities, *scene.bodies)
+    }
     places: dict[tuple[str, str], str] = {}
     facts = (*sorted(problem.stream_task.task.initial), *solution.certified)
-    for fact in sorted(facts, key=lambda fact: fact[0] not in STANDING):
-        if len(fact) == 4 and fact[3] in known and fact[3] not in solution.values:
-            name = known[fact[3]]
+    for fact in sorted(facts, key=lambda fact: fact[0] not in SUPPORT_PREDICATES):
+        if len(fact) == 4 and fact[3] in scene_names and fact[3] not in solution.values:
+            name = scene_names[fact[3]]
             places.setdefault(
                 (fact[1], fact[2]), f"in {name}" if name in scene.cavities else f"on {name}"
             )
@@ -179,14 +173,15 @@ def _base(segment: Segment, index: int) -> str:
 
 def _effort(solution: Solution, loading: float) -> list[str]:
     total = max(solution.seconds.get("total", 0.0), 1e-9)
+    kinds = {one.name: one.kind for one in solution.problem.stream_task.streams}
     parts: dict[str, float] = {}
     for name, seconds in solution.seconds.items():
-        part = name if name in APART else _part(name)
-        if part is not None:
+        part = name if name in APART else kinds.get(name, StreamKind.OTHER).value
+        if name != "total":
             parts[part] = parts.get(part, 0.0) + seconds
 
-    rest = "improving" if solution.improvements else "other"
-    times = [f"{part} {share} %" for part, share in time_shares(parts, total, rest)]
+    unnamed = "improving" if solution.improvements else "other"
+    times = [f"{part} {share} %" for part, share in time_shares(parts, total, unnamed)]
     passed = f"{total:.1f} s" + (f" after {loading:.1f} s of loading" if loading else "")
 
     effort = solution.effort
@@ -213,17 +208,19 @@ def _effort(solution: Solution, loading: float) -> list[str]:
     ]
 
 
-def time_shares(parts: dict[str, float], total: float, rest: str) -> list[tuple[str, int]]:
-    """Round shares of time to percents of sum 100, largest first; `rest` is what no part claims."""
+def time_shares(parts: dict[str, float], total: float, unnamed: str) -> list[tuple[str, int]]:
+    """Round shares of time to percents of sum 100, largest first; `unnamed` is what no part
+    claims.
+    """
     told = {part: seconds for part, seconds in parts.items() if seconds > 0.005 * total}
-    told[rest] = max(0.0, total - sum(told.values()))
+    told[unnamed] = max(0.0, total - sum(told.values()))
     whole = max(total, sum(told.values()))
     exact = {part: 100.0 * seconds / whole for part, seconds in told.items()}
     shares = {part: math.floor(share) for part, share in exact.items()}
     nearest = sorted(exact, key=lambda part: shares[part] - exact[part])
     for part in nearest[: 100 - sum(shares.values())]:
         shares[part] += 1
-    order = sorted(shares, key=lambda part: (part == rest, -exact[part]))
+    order = sorted(shares, key=lambda part: (part == unnamed, -exact[part]))
     return [(part, shares[part]) for part in order if shares[part] > 0]
 
 
@@ -243,13 +240,6 @@ def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
         break_on_hyphens=False,
     )
     return [line.replace("\u00a0", " ").removesuffix(" ·") for line in lines]
-
-
-def _part(stream: str) -> str | None:
-    for part, beginnings in PARTS.items():
-        if stream.startswith(beginnings):
-            return part
-    return None if stream == "total" else "other streams"
 
 
 def _count(number: int, one: str, many: str | None = None) -> str:

@@ -57,13 +57,13 @@ class Served:
         Raises:
             InputError: An unknown relation or sampler; one of `on` or `inside` that cannot propose.
         """
-        known: dict[str, dict[str, Callable[..., Grounding]]] = {}
+        makers_of: dict[str, dict[str, Callable[..., Grounding]]] = {}
         given = {
             relation: {USER_OBJECT: partial(_same, item)} for relation, item in groundings.items()
         }
         for source in (SAMPLERS, registry, given):
             for relation, makers in source.items():
-                known.setdefault(relation, {}).update(makers)
+                makers_of.setdefault(relation, {}).update(makers)
 
         choices = {
             relation: SamplerSpec(next(iter(makers)), alone=True)
@@ -71,12 +71,12 @@ class Served:
         }
         for relation, text in loaded.samplers.items():
             try:
-                choices[relation] = parse_choice(relation, text, known, loaded.path.parent)
+                choices[relation] = parse_choice(relation, text, makers_of, loaded.path.parent)
             except InputError as error:
                 raise error.at(loaded.path, loaded.line_of("samplers", relation)) from None
 
         choices |= {
-            relation: parse_choice(relation, text, known) for relation, text in samplers.items()
+            relation: parse_choice(relation, text, makers_of) for relation, text in samplers.items()
         }
         for relation, item in groundings.items():
             if (
@@ -86,7 +86,7 @@ class Served:
                 choices[relation] = SamplerSpec(USER_OBJECT, alone=False)
 
         made: dict[str, Grounding] = {
-            name: maker(name, choice, known)() for name, choice in choices.items()
+            name: maker(name, choice, makers_of)() for name, choice in choices.items()
         }
         for relation, item in made.items():
             if not isinstance(item, Generator) and relation in SAMPLERS:

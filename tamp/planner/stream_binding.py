@@ -10,10 +10,12 @@ from tamp.errors import InputError
 from tamp.geometric.context import Context
 from tamp.geometric.streams.registry import STREAMS
 from tamp.planner.missing_function import without_function
+from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.pddl.parser import output_types
-from tamp.symbolic.pddl.structs import Domain, StreamFile
+from tamp.symbolic.pddl.relations import SAMPLE
+from tamp.symbolic.pddl.structs import Domain, Stream, StreamFile
 
 
 def bind(
@@ -35,17 +37,19 @@ def bind(
     Raises:
         InputError: Another stream without a function, or a :predicate.
     """
-    known = {**STREAMS, **functions}
+    available = {**{name: one.function for name, one in STREAMS.items()}, **functions}
 
     bound: list[BoundStream] = []
     for stream in declared.streams:
-        if stream.name not in known and stream.name in unasked:
+        if stream.name not in available and stream.name in unasked:
             continue
-        if stream.name not in known:
-            raise without_function(stream, declared.file, known)
+        if stream.name not in available:
+            raise without_function(stream, declared.file, available)
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
-        bound.append(BoundStream(stream, partial(known[stream.name], context), outputs))
+        function = partial(available[stream.name], context)
+        advises = stream.name.startswith(SAMPLE)
+        bound.append(BoundStream(stream, function, outputs, advises, _kind(stream)))
 
     _refuse_decided(declared)
     return (*bound, *(BoundStream(rule, _always, ()) for rule in declared.rules))
@@ -70,6 +74,17 @@ def unused_functions(declared: StreamFile, functions: Mapping[str, Any]) -> list
         for name in functions
         if name not in names
     ]
+
+
+def _kind(stream: Stream) -> StreamKind:
+    """Return the kind of a shipped stream, and of another one by what it declares."""
+    if stream.name in STREAMS:
+        return STREAMS[stream.name].kind
+    if not stream.outputs:
+        return StreamKind.TESTS
+    if stream.name.startswith(SAMPLE):
+        return StreamKind.PLACEMENTS
+    return StreamKind.MOTION if stream.fluents else StreamKind.OTHER
 
 
 def _always(*inputs: Any, call: Any) -> bool:

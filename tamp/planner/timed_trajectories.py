@@ -133,8 +133,8 @@ class PlanTimer:
             self._poses |= {rider: pose @ T_body_rider for rider, T_body_rider in self._load}
             self._held, self._load = None, ()
         positions = np.array(grip.opening)[:, None]
-        speed = sum(finger.velocity for finger in self._context.robot.fingers)
-        times = np.array([0.0, max(GRIP_TIME, abs(grip.opening[1] - grip.opening[0]) / speed)])
+        way, speed = abs(grip.opening[1] - grip.opening[0]), 2 * self._context.robot.finger_speed
+        times = np.array([0.0, max(GRIP_TIME, way / speed if way else 0.0)])
         return Segment(
             "gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach, grip.load
         )

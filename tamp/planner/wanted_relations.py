@@ -160,8 +160,8 @@ def _asked(relation: Relation, domain: Domain, goal: Formula) -> Iterator[tuple[
             bound = dict(zip(rule.head.terms, atom.terms, strict=True))
             for one, way in signed_atoms(rule.body, helps):
                 terms = tuple(bound.get(term, term) for term in one.terms)
-                known = tuple("?" if term.startswith("?") else term for term in terms)
-                key = (one.predicate, known, way)
+                pattern = tuple("?" if term.startswith("?") else term for term in terms)
+                key = (one.predicate, pattern, way)
                 if key not in seen:
                     seen.add(key)
                     waiting.append((Atom(one.predicate, terms), way))

@@ -70,8 +70,13 @@ class BulletMotors(BulletWorld, MotorSimulation):
 
         self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
         self._finger_joints = [joint[finger.name] for finger in robot.fingers]
-        self._fingers = Fingers(bullet, client, self._mover, self._finger_joints, force)
+        self._fingers = (
+            Fingers(bullet, client, self._mover, self._finger_joints, force)
+            if robot.fingers
+            else None
+        )
         self._hand = link[robot.hand]
+        self._grasping = self._finger_joints or [self._hand]
         self.robot_links = frozenset(link)
         self.hand_link = robot.hand
         self.finger_links = tuple(one.name for one in robot.finger_links)
@@ -100,7 +105,8 @@ class BulletMotors(BulletWorld, MotorSimulation):
             targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
             positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
-        self._fingers.drive(self.opening, self.squeezing, COMMANDS_PER_SECOND)
+        if self._fingers is not None:
+            self._fingers.drive(self.opening, self.squeezing, COMMANDS_PER_SECOND)
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
 
@@ -118,7 +124,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
 
     def width(self) -> float:
         """Return how far the fingers are apart, metres."""
-        return self._fingers.width()
+        return 0.0 if self._fingers is None else self._fingers.width()
 
     def tool(self) -> Array:
         """Return the actual T_world_tool (4, 4)."""
@@ -153,13 +159,13 @@ class BulletMotors(BulletWorld, MotorSimulation):
         return found
 
     def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
-        """Check whether both fingers are this near to a body, metres."""
+        """Check whether both fingers, or the cup, are this near to a body, metres."""
         handle = self.solids[body][0].handle
         return all(
             self._bullet.getClosestPoints(
                 self._mover, handle, reach, finger, -1, physicsClientId=self.client
             )
-            for finger in self._finger_joints
+            for finger in self._grasping
         )
 
     # What happens to bodies

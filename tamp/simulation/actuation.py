@@ -52,6 +52,7 @@ class MotorSimulation(World):
         bound: The body that a fixed constraint binds to the hand, or None.
         widest: The fingers' largest opening, metres.
         robot_links: Names of the robot's links, of which `hand_link` and `finger_links` are some.
+            A suction gripper has no fingers.
     """
 
     conf: Array
@@ -109,7 +110,7 @@ class MotorSimulation(World):
 
     @abstractmethod
     def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
-        """Check whether both fingers are this near to a body, metres."""
+        """Check whether both fingers, or the cup, are this near to a body, metres."""
 
     # What happens to bodies
 

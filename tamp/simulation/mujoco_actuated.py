@@ -191,10 +191,10 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         return found
 
     def near_fingers(self, body: str, reach: float = BETWEEN_FINGERS_M) -> bool:
-        """Check whether both fingers are this near to a body, metres."""
+        """Check whether both fingers, or the cup, are this near to a body, metres."""
         return all(
             self.distance(self.links[finger], solid, reach) < reach
-            for finger in self.finger_links
+            for finger in self.finger_links or (self.hand_link,)
             for solid in self.solids[body]
         )
 

@@ -113,7 +113,9 @@ class MujocoWorld(World):
         self._frames = np.array([solid.handle for solid in self.links.values()])
         driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
         self._driven = np.array([model.joint(name).qposadr[0] for name in driven])
-        self._fingers = np.array([model.joint(one.name).qposadr[0] for one in robot.fingers])
+        self._fingers = np.array(
+            [model.joint(one.name).qposadr[0] for one in robot.fingers], dtype=int
+        )
         start = self.scene.robot
         self.set_robot(start.base, start.arm or robot.home, robot.opening)
 

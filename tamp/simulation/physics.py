@@ -85,7 +85,7 @@ class BulletWorld(World):
             self._base_at = at
             frames = (Pose.from_matrix(T) for T in (T_world_base, T_world_base @ self._T_base_foot))
             self._base_frames = [(*pose.position, *pose.quaternion) for pose in frames]
-        values = [[float(q)] for q in arm] + [[opening / 2], [opening / 2]]
+        values = [[float(q)] for q in arm] + [[opening / 2]] * self._fingers_count
         self._bullet.resetJointStatesMultiDof(
             self._arm, self._joints, values, physicsClientId=self.client
         )
@@ -219,6 +219,7 @@ class BulletWorld(World):
             if info[1].decode() in moving:
                 joints[info[1].decode()] = number
         self._joints = [joints[one.name] for one in (*robot.joints, *robot.fingers)]
+        self._fingers_count = len(robot.fingers)
         others = [link.name for link in robot.links if link not in (base, foot)]
         self._names = others
         self._indices = [index[name] for name in self._names]

@@ -277,7 +277,7 @@ def _names(kind: type) -> Iterator[str]:
 def _check_names(kind: type, words: Sequence[str], remedy: str = "") -> None:
     """Refuse an option that there is not, with the one that was probably meant."""
     given = [word.partition("=")[0].replace("_", "-") for word in words if word.startswith("--")]
-    known = [*_names(kind), "--help"] if given else []
+    names = [*_names(kind), "--help"] if given else []
     for name in given:
-        if name not in known:
-            raise InputError(f"unknown option '{name}'", found=name, choices=known, remedy=remedy)
+        if name not in names:
+            raise InputError(f"unknown option '{name}'", found=name, choices=names, remedy=remedy)

@@ -16,6 +16,7 @@ from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.collision_sweep import MAX_PENETRATION_M, CollisionFindings, Sweeper
 from tamp.verification.execution_state import Held
+from tamp.verification.holding import why_not_held
 from tamp.verification.initial_state import owner_of
 from tamp.verification.limits import RANGE_TOLERANCE
 from tamp.verification.makers_limits import limits_of
@@ -24,12 +25,6 @@ POSE_DIFFERENCE_M = 0.001
 """Metres by which two poses that should be one may differ."""
 POSE_DIFFERENCE_RAD = math.radians(0.5)
 """Radians by which they may be turned."""
-FINGER_PENETRATION_M = 0.002
-"""Metres by which fingers may be in what they hold."""
-FINGER_GAP_M = 0.003
-"""Metres by which a finger may be off what it holds."""
-PAD_HALF_SIDE_M = 0.008
-"""Metres from the tool frame's origin to the pads' edges along its x and z."""
 EMPTY_PLACE_M = (0.0, -300.0)
 """Metres x, y: where nothing else is."""
 
@@ -68,8 +63,8 @@ class Certified:
             "anchored": ("?", self._anchored),
             "stackable": ("o?o", self._stackable),
             "grasp": ("og", self._grasp),
-            "standing": ("b", self._standing),
-            "base-conf": ("b", self._standing),
+            "standing": ("b", self._base_conf),
+            "base-conf": ("b", self._base_conf),
             "kin": ("opgbq", self._kinematics),
             "base-motion": ("bt", self._base_motion),
             "pick-motion": ("opgbqt", self._kinematics),
@@ -115,50 +110,10 @@ class Certified:
                     yield Violation("certified", f"{text} does not hold: {why}", bodies=bodies)
 
     def why_not_held(self, body: str, T_tool_body: Array, opening: float) -> str | None:
-        """Say why fingers at an opening do not hold a body at T_tool_body; None when they do."""
+        """Say why the hand at an opening does not hold a body at T_tool_body; None when it does."""
         world, robot = self._world, self._robot
-        if not 0.0 <= opening <= robot.opening + 1e-6:
-            return f"the fingers cannot open to {1000 * opening:.1f} mm"
         T_world_tool = self._sweeper.tool(np.array([*EMPTY_PLACE_M, 0.0, *robot.home, opening]))
-        T_before = world.pose(body)
-        world.place(body, T_world_tool @ T_tool_body)
-        try:
-            return self._why_not_tight(body) or self._why_not_between(body, T_world_tool, opening)
-        finally:
-            world.place(body, T_before)
-
-    def _why_not_tight(self, body: str) -> str | None:
-        """Say why the hand as it stands does not touch a body as it should; None when it does."""
-        hand = self._world.links[self._robot.hand]
-        fingers = (self._world.links[link.name] for link in self._robot.finger_links)
-        for name, link, loosest in (
-            ("palm", hand, math.inf),
-            *(("finger", finger, FINGER_GAP_M) for finger in fingers),
-        ):
-            distance = min(
-                self._world.distance(link, solid, 0.05) for solid in self._world.solids[body]
-            )
-            if distance < -FINGER_PENETRATION_M:
-                return f"the {name} is {-1000 * distance:.1f} mm in it"
-            if distance > loosest:
-                far = f"{1000 * distance:.1f} mm" if math.isfinite(distance) else "far"
-                return f"a {name} is {far} off it"
-        return None
-
-    def _why_not_between(self, body: str, T_world_tool: Array, opening: float) -> str | None:
-        """Say why a body is not between the pads; it is when a line from pad to pad meets it."""
-        reach = max(opening / 2 - 2e-4, 1e-4)
-        at = [
-            (x, z)
-            for x in np.linspace(-PAD_HALF_SIDE_M, PAD_HALF_SIDE_M, 5)
-            for z in np.linspace(-PAD_HALF_SIDE_M, PAD_HALF_SIDE_M, 5)
-        ]
-        ends = []
-        for side in (-reach, reach):
-            points = np.array([(x, side, z) for x, z in at])
-            ends.append(points @ T_world_tool[:3, :3].T + T_world_tool[:3, 3])
-        met = {name for name, _ in self._world.rays(ends[0], ends[1])}
-        return None if body in met else "it is not between the fingers' pads"
+        return why_not_held(world, robot, body, T_world_tool, T_tool_body, opening)
 
     def _malformed(self, kinds: str, terms: list[str]) -> str | None:
         types = {"p": "pose", "g": "grasp", "b": "base-conf", "q": "reach", "t": "motion"}
@@ -200,7 +155,7 @@ class Certified:
             return f"{terms[1]} is a grasp of {hold.body}"
         return self.why_not_held(self._bodies[terms[0]], hold.T_tool_body, hold.opening)
 
-    def _standing(self, terms: list[str]) -> str | None:
+    def _base_conf(self, terms: list[str]) -> str | None:
         x, y, _ = self._plan.values[terms[0]].data
         room = self._world.scene.room
         inside = (

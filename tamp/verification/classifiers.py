@@ -16,11 +16,11 @@ the classifier.
 
 
 def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
-    """Load classifiers, by relation.
+    """Load classifiers, by relation; one that ships by its name, as in stack=learned.
 
     Raises:
         InputError: Something else than RELATION=FILE; a file that cannot be used, or without a
-            classifier.
+            classifier; a name that does not ship.
     """
     found: dict[str, Classifier] = {}
     for pair in pairs:
@@ -31,7 +31,7 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
 
         for mode in SAMPLER_MODES:
             name = name.removesuffix(mode)
-        made = _made(relation, Path(name))
+        made = _made(relation.lower(), Path(name))
 
         if isinstance(made, Undecided):
             raise InputError(
@@ -53,9 +53,13 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
 def _made(relation: str, file: Path) -> object:
     if file.suffix == ".py":
         return python_object(file)
-    if file.suffix != ".safetensors":
-        remedy = "Give the classifier's file: FILE.py or FILE.safetensors"
-        raise InputError(f"the judge knows no sampler '{file}' for '{relation}'", remedy=remedy)
-    from grounding.registry import file_grounding  # learned ones need numpy only
+    from grounding.registry import GROUNDINGS, LEARNED, file_grounding  # they need numpy only
 
-    return file_grounding(relation, file)
+    if file.suffix == ".safetensors":
+        return file_grounding(relation, file)
+    shipped = GROUNDINGS[relation] if relation in LEARNED else {}
+    if str(file) not in shipped:
+        what = f"the judge knows no sampler '{file}' for '{relation}'"
+        remedy = "Give the classifier's file: FILE.py or FILE.safetensors"
+        raise InputError(what, found=str(file), choices=shipped, remedy=remedy)
+    return shipped[str(file)]()

@@ -50,12 +50,12 @@ class ExpectedContacts:
             letting go of.
         grasped: Bodies that the hand and fingers may be near: one that they are reaching for or
             have let go of.
-        resting: Bodies that the held one may be near: those that it stood on or will stand on.
+        supporting: Bodies that the held one may be near: those that it stood on or will stand on.
     """
 
     touching: frozenset[str] = frozenset()
     grasped: frozenset[str] = frozenset()
-    resting: frozenset[str] = frozenset()
+    supporting: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -181,7 +181,7 @@ class Sweeper:
         by_hand += [False] * (len(movers) - len(by_hand))
         in_hand = np.arange(len(movers)) >= len(self._solids)
         for which, near, mark in (
-            (by_hand, usual.grasped, 0.0), (in_hand, usual.resting, 0.0),
+            (by_hand, usual.grasped, 0.0), (in_hand, usual.supporting, 0.0),
             (by_hand, usual.touching, -1.0),
         ):  # fmt: skip
             marks[np.ix_(np.array(which), np.array([owner in near for owner in owners]))] = mark
@@ -195,7 +195,7 @@ class Sweeper:
         findings: CollisionFindings,
         still: Still,
         expected: Array,
-        known: Advancement,
+        advancement: Advancement,
     ) -> None:
         movers = self._sampler.movers(held)
         within = np.where(expected > 0.0, findings.margin, np.where(expected < 0.0, -np.inf, 0.0))
@@ -204,14 +204,14 @@ class Sweeper:
             counts = expected[mover, other] > 0.0
             reach = findings.margin if counts else 0.0
             pair, way = (mover, other), float(motion.ways[mover, state])
-            if bound >= reach or known.apart(pair, way, reach):
+            if bound >= reach or advancement.apart(pair, way, reach):
                 continue
 
             if state != current:
                 self._pose(motion, state, held)
                 current = state
             first, second = movers[mover], still.solids[other]
-            distance = known.distance(pair, (first, second), way, reach)
+            distance = advancement.distance(pair, (first, second), way, reach)
             if distance < CLEARANCE_RANGE_M:
                 contact = Contact(first.owner, second.owner, distance, float(motion.times[state]))
                 tolerance = max(
@@ -221,7 +221,11 @@ class Sweeper:
                 findings.record(contact, counts and findings.clearance, tolerance)
 
     def _against_itself(
-        self, motion: Motion, held: Held | None, findings: CollisionFindings, known: Advancement
+        self,
+        motion: Motion,
+        held: Held | None,
+        findings: CollisionFindings,
+        advancement: Advancement,
     ) -> None:
         movers = self._sampler.movers(held)
         pairs = list(self._self_pairs)
@@ -238,12 +242,12 @@ class Sweeper:
         for state, number in near_itself(motion, np.array(pairs)):
             i, j = pairs[number]
             way = float(motion.ways[i, state] + motion.ways[j, state])
-            if known.apart((i, j), way, 0.0):
+            if advancement.apart((i, j), way, 0.0):
                 continue
             if state != current:
                 self._pose(motion, state, held)
                 current = state
-            distance = known.distance((i, j), (movers[i], movers[j]), way, 0.0)
+            distance = advancement.distance((i, j), (movers[i], movers[j]), way, 0.0)
             if distance < 0:
                 time = float(motion.times[state])
                 findings.record(Contact(movers[i].owner, movers[j].owner, distance, time), False)

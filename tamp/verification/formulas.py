@@ -1,4 +1,4 @@
-"""Formulas of PDDL: substitute, show, take apart, unify."""
+"""Formulas of PDDL: substitute, take apart, unify."""
 
 from __future__ import annotations
 
@@ -23,18 +23,6 @@ def substitute(formula: Formula, binding: Mapping[str, str]) -> Formula:
         formula.parameters,
         substitute(formula.body, {k: v for k, v in binding.items() if k not in inner}),
     )
-
-
-def show(formula: Formula) -> str:
-    """Write a formula in PDDL."""
-    if isinstance(formula, Atom):
-        return f"({' '.join((formula.predicate, *formula.terms))})"
-    if isinstance(formula, Not):
-        return f"(not {show(formula.body)})"
-    if isinstance(formula, And | Or):
-        return f"({' '.join((type(formula).__name__.lower(), *map(show, formula.parts)))})"
-    names = " ".join(f"{p.name} - {p.types[0]}" for p in formula.parameters)
-    return f"({type(formula).__name__.lower()} ({names}) {show(formula.body)})"
 
 
 def flat(formula: Formula) -> list[Formula]:

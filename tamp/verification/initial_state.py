@@ -72,16 +72,16 @@ def check_initial(
     for fact in plan.initial:
         predicate, *terms = fact
         text = f"({' '.join(fact)})"
-        known = predicate in FLUENT_ARITY and has_standard_meaning(domain, predicate)
-        if known and len(terms) != FLUENT_ARITY[predicate]:
+        standard = predicate in FLUENT_ARITY and has_standard_meaning(domain, predicate)
+        if standard and len(terms) != FLUENT_ARITY[predicate]:
             yield Violation("initial", f"{text} has a wrong number of arguments")
         elif (
             fact in given
-            or (not known and predicate in static)
+            or (not standard and predicate in static)
             or _is_kind(fact, plan, scene, domain)
         ):
             continue
-        elif known and predicate == "at-pose" and terms[0] in bodies:
+        elif standard and predicate == "at-pose" and terms[0] in bodies:
             placed.append(terms[0])
             value = plan.values.get(terms[1])
             if value is None or value.type != "pose":
@@ -94,13 +94,13 @@ def check_initial(
                     off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                     message = f"{text}: {terms[0]} starts {off} from there"
                     yield Violation("initial", message, bodies=(terms[0],), depth=moved)
-        elif known and predicate == "at-base":
+        elif standard and predicate == "at-base":
             value = plan.values.get(terms[0])
             if value is None or value.type != "base-conf":
                 yield Violation("initial", f"{text}: '{terms[0]}' is not a base-conf")
             elif base_difference(value.data, np.array(scene.robot.base)) > START_TOLERANCE:
                 yield Violation("initial", f"{text}: the base starts elsewhere")
-        elif not (known and predicate == "hand-empty"):
+        elif not (standard and predicate == "hand-empty"):
             yield Violation("initial", f"the problem does not imply {text}")
 
     if has_standard_meaning(domain, "at-pose"):

@@ -62,9 +62,9 @@ class LinkFrames:
 
     def __init__(self, world: World, robot: Robot) -> None:
         self._world = world
-        self._rest = self._asked(np.zeros(len(robot.joints) + 1))
+        self._zero_frames = self._asked(np.zeros(len(robot.joints) + 1))
         self._motions: list[tuple[int, _Motion]] = []
-        self._paths: list[tuple[int, ...]] = [() for _ in self._rest]
+        self._paths: list[tuple[int, ...]] = [() for _ in self._zero_frames]
         for joint in range(len(robot.joints) + 1):
             self._measure(joint, len(robot.joints) + 1)
         self.measured = self._agrees(robot)
@@ -89,14 +89,14 @@ class LinkFrames:
     def _measure(self, joint: int, joints: int) -> None:
         """Measure how a joint moves each link; links that it moves alike share a motion."""
         unit = np.eye(joints)[joint]
-        inverse = np.linalg.inv(self._rest)
+        inverse = np.linalg.inv(self._zero_frames)
         one, quarter, half = (
             self._asked(value * unit) @ inverse for value in (1.0, math.pi / 2, math.pi)
         )
         none = np.zeros((4, 4))
         found: list[int] = []
 
-        for link in range(len(self._rest)):
+        for link in range(len(self._zero_frames)):
             if np.abs(one[link] - np.eye(4)).max() < STILL:
                 continue
             if np.abs(one[link, :3, :3] - np.eye(3)).max() < STILL:
@@ -114,13 +114,13 @@ class LinkFrames:
     def _computed(self, rows: Array) -> Array:
         moves = [motion.at(rows[:, 3 + joint]) for joint, motion in self._motions]
         products: dict[tuple[int, ...], Array] = {(): base_frames(rows[:, :3])}
-        result = np.empty((len(self._rest), len(rows), 4, 4))
+        result = np.empty((len(self._zero_frames), len(rows), 4, 4))
         for link, path in enumerate(self._paths):
             for length in range(1, len(path) + 1):
                 if path[:length] not in products:
                     before = products[path[: length - 1]]
                     products[path[:length]] = before @ moves[path[length - 1]]
-            np.matmul(products[path], self._rest[link], out=result[link])
+            np.matmul(products[path], self._zero_frames[link], out=result[link])
         return result
 
     def _agrees(self, robot: Robot) -> bool:

@@ -29,10 +29,10 @@ class Loads:
         plan: PlanFile,
         world: World,
         semantics: Semantics,
-        standing: SupportRelations,
+        supports: SupportRelations,
         log: Log,
     ) -> None:
-        self._plan, self._world, self._standing, self._log = plan, world, standing, log
+        self._plan, self._world, self._supports, self._log = plan, world, supports, log
         self._bodies = {name.lower(): name for name in world.scene.bodies}
         self._meant = has_standard_meaning(semantics.domain, "riding")
         self._upright: dict[str, Array] = {}
@@ -64,10 +64,12 @@ class Loads:
             name = self._bodies.get(rider)
             if name is None or below != body.lower():
                 continue
-            on = self._standing.stand(name, None).on
+            on = self._supports.stand(name, None).on
             if on != {body}:
-                rests = ", ".join(sorted(on)) or "nothing"
-                self._log.add("grasp", f"{name} does not ride on {body}: it rests on {rests}", name)
+                supports = ", ".join(sorted(on)) or "nothing"
+                self._log.add(
+                    "grasp", f"{name} does not ride on {body}: it rests on {supports}", name
+                )
                 continue
             load.append(Held(name, np.linalg.inv(T_world_tool) @ self._world.pose(name)))
         return tuple(load)

@@ -51,8 +51,8 @@ MAKERS_LIMITS: Mapping[str, MakersLimits] = {"panda_mobile": PANDA_MOBILE}
 
 def limits_of(robot: Robot) -> MakersLimits:
     """Return the maker's limits of a robot; of one that has no entry, what it says of itself."""
-    known = MAKERS_LIMITS.get(robot.name) if robot.folder.parent == ASSETS else None
-    return known or MakersLimits(
+    listed = MAKERS_LIMITS.get(robot.name) if robot.folder.parent == ASSETS else None
+    return listed or MakersLimits(
         robot.lower, robot.upper, robot.velocity, robot.acceleration,
-        min(finger.velocity for finger in robot.fingers), robot.opening, (),
+        robot.finger_speed, robot.opening, (),
     )  # fmt: skip

@@ -134,9 +134,9 @@ class Relations:
 
         names = scene_names(self._world.scene)
         return {
-            body: known
+            body: names_of_poses
             for body, poses in found.items()
-            if body in names and (known := [pose for pose in poses if self._is_pose(pose)])
+            if body in names and (names_of_poses := [pose for pose in poses if self._is_pose(pose)])
         }
 
     def _is_pose(self, name: str) -> bool:

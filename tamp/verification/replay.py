@@ -12,11 +12,11 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.world import World
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD, Certified
 from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
 from tamp.verification.execution_state import ExecutionState, Held
-from tamp.verification.formulas import show
 from tamp.verification.limits import limit_violations
 from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
@@ -62,8 +62,8 @@ class Replay:
         rows = sum(len(segment.times) for action in plan.actions for segment in action.segments)
         self._looks, self._looks_beyond = MAX_STATES_AT_FIRST + LOOKS_A_ROW * rows, LOOKS_BEYOND
         self._agreement = Agreement(plan, world, semantics.domain, self.log)
-        self._standing = SupportRelations(plan, world, semantics, certified.checkable, self.log)
-        self._loads = Loads(plan, world, semantics, self._standing, self.log)
+        self._supports = SupportRelations(plan, world, semantics, certified.checkable, self.log)
+        self._loads = Loads(plan, world, semantics, self._supports, self.log)
         self._state = State.of(())
         start = world.scene.robot
         arm = start.arm if start.arm is not None else robot.home
@@ -72,14 +72,14 @@ class Replay:
     @property
     def notes(self) -> list[str]:
         """Return oddities that are not the plan's fault."""
-        return self._standing.notes
+        return self._supports.notes
 
     def run(self, goal: Formula) -> None:
         """Replay the plan from the start to the goal."""
         state = State.of((*self._plan.initial, *self._plan.certified))
         state = self._relations.observed(state, self.course.in_hand)
         note_touching(self._world, self._sweeper, self.log)
-        self._standing.check_relations(state, None)
+        self._supports.check_relations(state, None)
 
         for index, action in enumerate(self._plan.actions):
             self.log.action, self.log.time = (index, action.name), self.course.time
@@ -89,7 +89,7 @@ class Replay:
             self._agreement.follows(action)
             self._agreement.compare(state, self.course)
             self._loads.compare(state, self.course)
-            self._standing.check_relations(state, self.course.in_hand)
+            self._supports.check_relations(state, self.course.in_hand)
             state = self._relations.observed(state, self.course.in_hand)
 
         self.log.action = self.log.time = None
@@ -100,8 +100,8 @@ class Replay:
         if abs(self._plan.cost - cost) > 1e-6:
             self.log.add("state", f"the actions cost {cost:g}, not {self._plan.cost:g}")
 
-        self._standing.check_unused(self.course.in_hand)
-        self._standing.check_goal(goal, state, self.course.in_hand)
+        self._supports.check_unused(self.course.in_hand)
+        self._supports.check_goal(goal, state, self.course.in_hand)
 
     def _apply(self, state: State, action: TimedAction) -> State:
         lifted = self._semantics.actions.get(action.name)
@@ -119,7 +119,7 @@ class Replay:
 
         for part in self._semantics.unmet(lifted, action.arguments, state):
             bodies = (argument for argument in action.arguments if argument in self._bodies)
-            self.log.add("precondition", f"{show(part)} does not hold", *bodies)
+            self.log.add("precondition", f"{to_text(part)} does not hold", *bodies)
         if isinstance(lifted.cost, int | float) and abs(lifted.cost - action.cost) > 1e-6:
             self.log.add("state", f"the action costs {lifted.cost:g}, not {action.cost:g}")
         return self._semantics.apply(lifted, action.arguments, state)
@@ -181,7 +181,7 @@ class Replay:
             self._detach(segment.detach, rows)
         touched = {segment.attach.body if segment.attach else None, segment.detach}
         touching = frozenset(name for word, name in self._bodies.items() if word in touched)
-        around = ExpectedContacts(touching, usual.grasped, usual.resting)
+        around = ExpectedContacts(touching, usual.grasped, usual.supporting)
         self._sweeper.sweep(rows, segment.times + course.time, course.held, findings, around)
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
@@ -244,7 +244,7 @@ class Replay:
             self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
         load = self._loads.on(hold, body, T_world_tool, self._state)
         course.held = Held(body, T_tool_body, load)
-        self._standing.check(body, {one.body for one in load})
+        self._supports.check(body, {one.body for one in load})
 
     def _detach(self, name: str, rows: Array) -> None:
         course = self.course
@@ -254,12 +254,12 @@ class Replay:
         if rows[-1, -1] < min(rows[0, -1] + POSE_DIFFERENCE_M, self._robot.opening) - SEGMENT_JUMP:
             self.log.add("grasp", f"the fingers do not open to let go of {name}", name)
         course.held = None
-        self._standing.check(None)
+        self._supports.check(None)
 
     def _expected_contacts(self, action: TimedAction) -> ExpectedContacts:
         """Find what an action is near by nature: bodies it grasps, what they stand on then."""
         grasped: set[str] = set()
-        resting: set[str] = set()
+        supporting_bodies: set[str] = set()
         row, held = self.course.row.copy(), self.course.held
 
         for segment in action.segments:
@@ -267,17 +267,17 @@ class Replay:
             if segment.attach is not None and segment.attach.body in self._bodies:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
-                resting |= self._standing.stand(body, None).on
+                supporting_bodies |= self._supports.stand(body, None).on
                 for pair in self._sweeper.together:
-                    resting |= set(pair) if body in pair else set()
+                    supporting_bodies |= set(pair) if body in pair else set()
                 held = Held(body, segment.attach.T_tool_body)
             if segment.detach is not None and held is not None:
                 before = self._world.pose(held.body)
                 self._world.place(held.body, self._sweeper.tool(row) @ held.T_tool_body)
                 grasped.add(held.body)
-                resting |= self._standing.stand(held.body, None).on
+                supporting_bodies |= self._supports.stand(held.body, None).on
                 self._world.place(held.body, before)
-        return ExpectedContacts(frozenset(), frozenset(grasped), frozenset(resting))
+        return ExpectedContacts(frozenset(), frozenset(grasped), frozenset(supporting_bodies))
 
 
 def _follow(row: Array, segment: Segment) -> None:

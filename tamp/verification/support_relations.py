@@ -6,9 +6,9 @@ from collections.abc import Collection
 
 from tamp.plan.read import PlanFile
 from tamp.simulation.world import World
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Fact, Formula
 from tamp.verification.formulas import facts as facts_of
-from tamp.verification.formulas import show
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_geometry import SupportContact, Supports
@@ -35,7 +35,7 @@ class SupportRelations:
     """
 
     def __init__(
-        self, plan: PlanFile, world: World, semantics: Semantics, known: set[str], log: Log
+        self, plan: PlanFile, world: World, semantics: Semantics, checkable: set[str], log: Log
     ) -> None:
         self._plan, self._world, self._semantics, self._log = plan, world, semantics, log
         self._supports = Supports(world)
@@ -49,7 +49,7 @@ class SupportRelations:
         self._relations = [
             fact
             for fact in facts
-            if fact[0] in known and len(fact) == SUPPORT_PREDICATES.get(fact[0])
+            if fact[0] in checkable and len(fact) == SUPPORT_PREDICATES.get(fact[0])
         ]
         self._checked: set[Fact] = set()
 
@@ -115,7 +115,7 @@ class SupportRelations:
     def check_goal(self, goal: Formula, state: State, in_hand: str | None) -> None:
         """Check the goal by the facts, and again by what the bodies say is on and inside what."""
         if not self._semantics.holds(goal, state):
-            self._log.add("goal", f"{show(goal)} does not follow from the facts at the end")
+            self._log.add("goal", f"{to_text(goal)} does not follow from the facts at the end")
 
         observed: set[Fact] = set()
         reasons: dict[Fact, str] = {}
@@ -140,7 +140,7 @@ class SupportRelations:
             asked = "; ".join(
                 f"({' '.join(fact)}): {why}" for fact, why in reasons.items() if fact in wanted
             )
-            message = f"{show(goal)} does not hold in the geometry at the end"
+            message = f"{to_text(goal)} does not hold in the geometry at the end"
             self._log.add("goal", f"{message}: {asked}" if asked else message)
 
     def _check_relation(self, fact: Fact, in_hand: str | None) -> None:
@@ -154,20 +154,20 @@ class SupportRelations:
             self._log.add("certified", f"({' '.join(fact)}) does not hold: {why}", *bodies)
 
     def _why_no_relation(self, fact: Fact, name: str, stand: SupportContact) -> str | None:
-        relation, rests = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
+        relation, supports = fact[0], f"it rests on {', '.join(sorted(stand.on)) or 'nothing'}"
         if relation == "grounded":
-            return rests if stand.on & set(self._world.scene.movable) else None
+            return supports if stand.on & set(self._world.scene.movable) else None
         if relation in ("supported", "contained"):
             return self._why_not(relation, name, fact[3], stand)
 
         below = self._bodies.get(fact[3 if relation != "stacked" else 4])
         if relation in ("rests-on", "borne"):
-            return None if below in stand.on else rests
+            return None if below in stand.on else supports
         if relation == "packed":
             return self._why_not("contained", name, fact[3], stand)
         if fact[3] in self._places["supported"]:
             return self._why_not("supported", name, fact[3], stand)
-        return stand.why if below in stand.on else rests
+        return stand.why if below in stand.on else supports
 
     def _why_not(self, relation: str, body: str, place: str, stand: SupportContact) -> str | None:
         if relation == "supported":

@@ -12,11 +12,12 @@ from tamp.plan.sources import sha256, unquoted
 from tamp.plan.symbolic import VERSION
 from tamp.plan.violation import Violation
 from tamp.symbolic.pddl.files import read_pddl
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Task
 from tamp.system.json_fields import Field, clipped
 from tamp.system.reading import is_file, read_json
-from tamp.verification.formulas import flat, ground, show
+from tamp.verification.formulas import flat, ground
 from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics, State
 
@@ -99,7 +100,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
                 what = f"{argument} is no {' or '.join(parameter.types)}"
                 violations.append(Violation("precondition", what, index, action.name))
         unmet = [
-            f"{show(formula)} does not hold"
+            f"{to_text(formula)} does not hold"
             for formula in semantics.unmet(action, arguments, state)
         ]
         violations += [Violation("precondition", what, index, action.name) for what in unmet]
@@ -115,7 +116,7 @@ def _run(task: Task, actions: list[Field], stated: float) -> list[Violation]:
         state = semantics.apply(action, arguments, state)
 
     missing = [part for part in flat(task.goal) if not semantics.holds(part, state)]
-    violations += [Violation("goal", f"{show(part)} does not hold") for part in missing]
+    violations += [Violation("goal", f"{to_text(part)} does not hold") for part in missing]
     if abs(total - stated) > COST_TOLERANCE:
         violations.append(Violation("cost", f"the plan costs {total:g}, not {stated:g}"))
     return violations
@@ -141,8 +142,8 @@ def _cost(task: Task, action: Action, arguments: list[str]) -> float | None:
     if not isinstance(action.cost, Atom):
         return float(action.cost)
     binding = dict(zip((p.name for p in action.parameters), arguments, strict=True))
-    known: Mapping[Fact, float] = task.costs
-    return known.get(ground(action.cost, binding))
+    costs: Mapping[Fact, float] = task.costs
+    return costs.get(ground(action.cost, binding))
 
 
 def _file(named: Path, given: Path | None, role: str, plan: Path | None) -> Path:

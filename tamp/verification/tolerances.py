@@ -6,7 +6,7 @@ import math
 
 from tamp.verification import certified_facts as certified
 from tamp.verification import collision_sweep as sweep
-from tamp.verification import limits, loads, replay
+from tamp.verification import holding, limits, loads, replay
 from tamp.verification import support_geometry as supports
 from tamp.verification import trajectory_sampling as sampling
 
@@ -44,7 +44,12 @@ def tolerances() -> tuple[tuple[str, str], ...]:
         ("pose of a body or the tool against the plan's", same),
         (
             "fingers: in what they hold, and off it",
-            f"{_mm(certified.FINGER_PENETRATION_M)}, {_mm(certified.FINGER_GAP_M)}",
+            f"{_mm(holding.FINGER_PENETRATION_M)}, {_mm(holding.FINGER_GAP_M)}",
+        ),
+        (
+            "suction cup: in what it holds, off it anywhere, and aslant beyond its own limit",
+            f"{_mm(holding.FINGER_PENETRATION_M)}, {_mm(holding.CUP_GAP_M)}, "
+            f"{math.degrees(holding.TILT_TOLERANCE_RAD):g} deg",
         ),
         ("a joint or the base beyond its range", f"{limits.RANGE_TOLERANCE:g} rad, m"),
         ("velocity and acceleration over the limit", f"{speed}, {harsh}"),

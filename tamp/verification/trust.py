@@ -110,7 +110,7 @@ def trusted_relations(
     domain: Domain,
     goal: Formula,
     streams: StreamFile | None,
-    known: Collection[str],
+    decided: Collection[str],
     given: Collection[Fact],
 ) -> tuple[str, ...]:
     """List relations that goal and actions rest on, and about which only the plan says what holds.
@@ -123,7 +123,7 @@ def trusted_relations(
         domain: Its domain.
         goal: Its goal.
         streams: Its streams, where they are known.
-        known: Predicates that the judge decides by itself.
+        decided: Predicates that the judge decides by itself.
         given: The initial facts that the problem states.
     """
     names = _names(streams, domain)
@@ -135,8 +135,8 @@ def trusted_relations(
         {atom.predicate for one in streams.streams for atom in one.certified} if streams else stated
     )
 
-    settled = {
-        *known,
+    decided_elsewhere = {
+        *decided,
         *domain.fluent_predicates,
         *domain.derived_predicates,
         *KINDS_OF_OBJECTS,
@@ -147,7 +147,7 @@ def trusted_relations(
     found = {
         names.get(predicate, predicate)
         for predicate, sign in _rested_on(plan, domain, goal)
-        if predicate not in settled and predicate in (stated if sign else certified)
+        if predicate not in decided_elsewhere and predicate in (stated if sign else certified)
     }
     return tuple(sorted(found))
 

@@ -117,8 +117,8 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
         replay = Replay(plan, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(inputs.goal)
         violations += log.violations
-        known = certified.checkable | inputs.decided
-        report = _report(inputs, violations, trusted, relations, replay, known, began)
+        decided = certified.checkable | inputs.decided
+        report = _report(inputs, violations, trusted, relations, replay, decided, began)
         return replace(report, engine=engine)
 
 
@@ -128,13 +128,15 @@ def _report(
     trusted: Mapping[str, int],
     relations: Relations,
     replay: Replay,
-    known: AbstractSet[str],
+    decided: AbstractSet[str],
     began: float,
 ) -> Report:
-    """Put the report together; `known` are the predicates that were checked."""
+    """Put the report together; `decided` are the predicates that were checked."""
     files, plan = inputs.files, inputs.files.plan
     on_trust = {
-        *trusted_relations(plan, inputs.domain, inputs.goal, inputs.streams, known, inputs.initial),
+        *trusted_relations(
+            plan, inputs.domain, inputs.goal, inputs.streams, decided, inputs.initial
+        ),
         *relations.silent,
     }
     unsaid = [

@@ -10,6 +10,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
 from tamp.geometric.loading.robot_folder import ROBOT_FILE
 from tamp.geometric.loading.robots import ROBOTS, find_robot, load_robot
+from tamp.plan.named_files import named_files
 from tamp.plan.open import open_plan
 from tamp.plan.read import read_plan
 from tamp.plan.write import plan_document, record_document, summary_document
@@ -36,7 +37,8 @@ def open_timeline(
     Args:
         what: The file or the name.
         problem: The problem's file, instead of the one that the plan names.
-        read: Told of the files that it was read from, the problem first, and of the meshes.
+        read: Told of the files that it was read from or that it names, the problem first, and of
+            the meshes.
 
     Raises:
         InputError: Neither, or something is wrong with it.
@@ -45,7 +47,8 @@ def open_timeline(
         stored = open_plan(what, problem)
         sources = [source.path for source in stored.plan.sources]
         beside = [Path(what).parent / path.name for path in sources]
-        read((stored.loaded.path, Path(what), *sources, *beside), _shown(stored.loaded))
+        named = named_files(stored.loaded)
+        read((stored.loaded.path, Path(what), *sources, *beside, *named), _shown(stored.loaded))
         timeline = timeline_of(stored.loaded.scene, stored.robot, stored.plan)
         return timeline, planning_summary(stored.document, Path(what)), stored.document
 
@@ -58,7 +61,7 @@ def open_timeline(
     if problem is not None:
         raise InputError("--problem goes with a plan", remedy="Name a plan file before it")
     loaded = load_scene(what)
-    read((loaded.path,), _shown(loaded))
+    read((loaded.path, *named_files(loaded)), _shown(loaded))
     scene = loaded.scene
     goal = " ".join(loaded.goal.text.split())
     head = f"{len(scene.bodies)} bodies, {len(scene.movable)} movable · goal {goal}"

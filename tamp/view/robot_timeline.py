@@ -18,7 +18,7 @@ SECONDS = 4.0
 
 def robot_timeline(robot: Robot, model: str) -> Timeline:
     """Make the timeline: at home, each joint of the arm down to its lower limit, up to its upper
-    one and back; then the fingers close and open.
+    one and back; then the fingers close and open, if there are any.
     """
     start = RobotStart(model, (0.0, 0.0, 0.0), None)
     scene = Scene(robot.name, {}, start, Room((-SIDE, SIDE), (-SIDE, SIDE)))
@@ -40,8 +40,9 @@ def robot_timeline(robot: Robot, model: str) -> Timeline:
     for index, (joint, low, high, middle) in enumerate(limits):
         unit = "m" if joint.kind == "prismatic" else "rad"
         go(joint.name, 3 + index, (low, middle, high, middle), f"{low:.2f} to {high:.2f} {unit}")
-    widest = robot.opening
-    go("fingers", len(home) - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
+    if robot.fingers:
+        widest = robot.opening
+        go("fingers", len(home) - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
     return Timeline(scene, robot, tuple(actions), np.array(times), np.array(rows), {})
 
 
@@ -50,5 +51,11 @@ def described(robot: Robot) -> str:
     parts = sum(len(link.parts) for link in robot.links)
     return (
         f"{robot.name} · {len(robot.joints)} joints · {robot.drive} base · {parts} convex parts · "
-        f"the fingers open {1000 * robot.opening:.0f} mm"
+        f"{_gripper(robot)}"
     )
+
+
+def _gripper(robot: Robot) -> str:
+    if robot.suction is None:
+        return f"the fingers open {1000 * robot.opening:.0f} mm"
+    return f"a suction cup {2000 * robot.suction.radius:.0f} mm across, {robot.force:g} N"

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
-from tamp.execution.circumstances import Circumstances
 from tamp.execution.disturbance import DISTURBANCES, schedule
 from tamp.execution.execute import execute
+from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.replan import Replanner
 from tamp.execution.report import Execution
 from tamp.plan.open import Stored
@@ -30,13 +30,15 @@ class Sceptic:
 
 def mended(stored: Stored, disturbance: str, seed: int = 0) -> Execution:
     replanner = Replanner(stored, max_time=20.0)
-    return execute(stored, Circumstances(replanner=replanner, disturbance=disturbance, seed=seed))
+    return execute(
+        stored, ExecutionOptions(replanner=replanner, disturbance=disturbance, seed=seed)
+    )
 
 
 @pytest.mark.parametrize("grasp", ["friction", "constraint"])
 def test_a_plan_reaches_its_goal(stored: Stored, grasp: str) -> None:
     sceptic = Sceptic()
-    done = execute(stored, Circumstances(grasp=grasp, classifiers={"on": ("sceptic", sceptic)}))
+    done = execute(stored, ExecutionOptions(grasp=grasp, classifiers={"on": ("sceptic", sceptic)}))
     assert done.reached and not done.explanation
     assert [action.name for action in done.actions] == [
         action.name for action in stored.plan.actions
@@ -69,7 +71,7 @@ def test_a_disturbed_plan_is_mended(stored: Stored, name: str) -> None:
 
 
 def test_what_is_dropped_is_lost_without_a_new_plan(stored: Stored) -> None:
-    done = execute(stored, Circumstances(disturbance="object-dropped"))
+    done = execute(stored, ExecutionOptions(disturbance="object-dropped"))
     assert not done.reached and done.replans == 0
     assert "lost" in done.kinds
     (part,) = done.goal
@@ -113,6 +115,6 @@ def test_a_disturbance_needs_a_moment(stored: Stored) -> None:
 
 def test_unknown_names_are_refused(stored: Stored) -> None:
     with pytest.raises(InputError, match=r"unknown disturbance 'object-eaten'.*object-moved"):
-        execute(stored, Circumstances(disturbance="object-eaten"))
+        execute(stored, ExecutionOptions(disturbance="object-eaten"))
     with pytest.raises(InputError, match=r"unknown grasp 'magnet'.*friction"):
-        execute(stored, Circumstances(grasp="magnet"))
+        execute(stored, ExecutionOptions(grasp="magnet"))

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tamp.execution.monitoring import FELT, Touch, Watch
+from tamp.execution.monitoring import FELT, ContactEvent, ContactMonitor
 from tamp.simulation.world import FLOOR_NAME
 from tests.execution.worlds import Noting
 
 
-def watched(world: Noting, active: str | None = None) -> Watch:
-    return Watch(world, active)  # type: ignore[arg-type]
+def watched(world: Noting, active: str | None = None) -> ContactMonitor:
+    return ContactMonitor(world, active)  # type: ignore[arg-type]
 
 
 def test_the_largest_lag_is_kept_of_base_and_arm_apart() -> None:
@@ -33,7 +33,7 @@ def test_the_hardest_touch_of_a_pair_is_kept() -> None:
     for force in (2.0, 7.0, 3.0):
         world.felt = {("arm", "cup"): force}
         watch.look()
-    assert watch.unwanted() == (Touch("arm", "cup", 7.0),)
+    assert watch.unwanted() == (ContactEvent("arm", "cup", 7.0),)
 
 
 @pytest.mark.parametrize(

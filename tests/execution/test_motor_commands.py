@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
-from tamp.execution.monitoring import EVERY, Watch
-from tamp.execution.motor_commands import CLOSING, REST, Player
+from tamp.execution.monitoring import EVERY, ContactMonitor
+from tamp.execution.motor_commands import CLOSING, REST, TrajectoryPlayer
 from tamp.simulation.actuation import COMMANDS_PER_SECOND
 from tests.execution.worlds import Noting
 from tests.plan.making import arm, base, close, let_go
@@ -17,13 +17,13 @@ from tests.plan.making import arm, base, close, let_go
 RESTING = round(REST * COMMANDS_PER_SECOND)
 
 
-def playing(world: Noting, grasp: str = "constraint") -> tuple[Player, Watch]:
-    return Player(world, grasp), Watch(world, None)  # type: ignore[arg-type]
+def playing(world: Noting, grasp: str = "constraint") -> tuple[TrajectoryPlayer, ContactMonitor]:
+    return TrajectoryPlayer(world, grasp), ContactMonitor(world, None)  # type: ignore[arg-type]
 
 
 def test_an_unknown_grasp_is_refused_with_the_choices() -> None:
     with pytest.raises(InputError, match=r"unknown grasp 'glue'.*Choices: "):
-        Player(Noting(), "glue")  # type: ignore[arg-type]
+        TrajectoryPlayer(Noting(), "glue")  # type: ignore[arg-type]
 
 
 def test_the_base_follows_its_segment_in_time_and_the_arm_stands() -> None:

@@ -24,7 +24,7 @@ def test_bodies_are_seen_where_they_are(stored: Stored) -> None:
     base = np.array([0.1, 0.2, 0.3])
     with Observer(scene) as observer:
         sunk = {name: raised(T, z=-CONTACT_GAP - 0.0005) for name, T in poses.items()}
-        truth = observer.see(sunk, base, None)
+        truth = observer.observe(sunk, base, None)
         assert truth.facts == {("on", "can", "right"), ("on", "block", "right")}
         assert truth.scene.robot.base == (0.1, 0.2, 0.3)
         for name, T in poses.items():  # the planner's air is under them again
@@ -36,7 +36,7 @@ def test_bodies_are_seen_where_they_are(stored: Stored) -> None:
         )
 
         fallen = {**sunk, "Can": raised(poses["Can"], x=-0.5, z=-0.5)}
-        truth = observer.see(fallen, base, None)
+        truth = observer.observe(fallen, base, None)
         assert truth.facts == {("on", "block", "right")}
         assert truth.scene.bodies["Can"].support is None
         assert truth.scene.bodies["Can"].pose.position[2] == pytest.approx(
@@ -44,12 +44,12 @@ def test_bodies_are_seen_where_they_are(stored: Stored) -> None:
         )
 
         stacked = {**sunk, "Can": raised(poses["block"], z=0.11 - CONTACT_GAP)}
-        truth = observer.see(stacked, base, None)
+        truth = observer.observe(stacked, base, None)
         assert ("on", "can", "block") in truth.facts and truth.scene.bodies[
             "Can"
         ].support == "block"
 
-        truth = observer.see(stacked, base, "Can")
+        truth = observer.observe(stacked, base, "Can")
         assert (
             truth.facts == {("on", "block", "right")} and truth.scene.bodies["Can"].support is None
         )

@@ -11,11 +11,11 @@ import pytest
 
 import tamp
 from tamp.commands import solve as cli
-from tamp.execution.circumstances import Circumstances
 from tamp.execution.execute import execute
+from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
-from tamp.execution.observation import Observer, Truth
+from tamp.execution.observation import ObservedScene, Observer
 from tamp.execution.relations import own_relations
 from tamp.geometric.samplers.python_file import python_grounding
 from tamp.plan.open import Stored, open_plan
@@ -80,11 +80,11 @@ def test_what_holds_is_on_trust_without_one(
     assert "(upright tea table) holds   upright.py says 1.00" in said
 
 
-def seen(stored: Stored, poses: dict[str, np.ndarray]) -> Truth:
+def seen(stored: Stored, poses: dict[str, np.ndarray]) -> ObservedScene:
     scene = stored.loaded.scene
     there = {name: poses.get(name, scene.bodies[name].pose.matrix) for name in scene.movable}
     with Observer(scene) as observer:
-        return observer.see(there, np.array([0.0, 0.0, 0.0]), None)
+        return observer.observe(there, np.array([0.0, 0.0, 0.0]), None)
 
 
 @pytest.mark.parametrize(
@@ -146,7 +146,7 @@ class Never:
 def test_what_should_hold_and_does_not_is_a_deviation(folder: Path) -> None:
     stored = open_plan(plan_for(folder, "(upright milk shelf)"))
     own = {"upright": ("never", Never(None))}
-    done = execute(stored, Circumstances(grasp="constraint", own=own))
+    done = execute(stored, ExecutionOptions(grasp="constraint", own=own))
     assert not done.reached and done.goal[0].probability == 0.0
     assert "(upright milk shelf) does not hold" in {
         one.message for one in done.actions[-1].deviations

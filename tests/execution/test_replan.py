@@ -9,7 +9,7 @@ import pytest
 
 from tamp.execution.deviation import Deviation
 from tamp.execution.expected import Expected
-from tamp.execution.observation import Truth
+from tamp.execution.observation import ObservedScene
 from tamp.execution.replan import Replanner
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
@@ -19,6 +19,7 @@ from tamp.plan.read import Hold
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
 from tamp.symbolic.pddl.parser import parse_domain
+from tamp.symbolic.pddl.structs import Atom, Exists, Formula, Not, Parameter
 from tamp.system.files import find_domain
 
 
@@ -27,6 +28,9 @@ def expectation(stored: Stored) -> Expected:
     return Expected(
         stored.plan, parse_domain(file.read_text(encoding="utf-8"), file), stored.loaded.scene
     )
+
+
+GOAL = Atom("on", ("can", "left"))
 
 
 def moved(scene: Scene, name: str, x: float, y: float) -> Scene:
@@ -62,9 +66,11 @@ def test_the_rest_is_kept_when_it_still_holds(
 ) -> None:
     expected = expectation(stored)
     scene = moved(stored.loaded.scene, name, x, y)
-    truth = Truth(scene, expected.facts, {})
+    truth = ObservedScene(scene, expected.facts, {})
     found = [Deviation("displaced", name, "it moved")]
-    mended = Replanner(stored).mend(truth, None, stored.plan, stored.plan.actions, found, expected)
+    mended = Replanner(stored).replan(
+        truth, None, stored.plan, stored.plan.actions, found, expected, GOAL
+    )
     assert mended.keeps is keeps
     assert (mended.plan is not None) is not keeps, mended.explanation
     if mended.plan is not None:
@@ -79,10 +85,39 @@ def test_a_body_where_another_one_should_go_is_in_the_way(stored: Stored) -> Non
     scene = moved(scene, "block", float(where[0, 3]) - block[0], float(where[1, 3]) - block[1])
     found = [Deviation("displaced", "block", "it moved")]
     first = expectation(stored)
-    mended = Replanner(stored).mend(
-        Truth(scene, frozenset(), {}), None, stored.plan, stored.plan.actions, found, first
+    mended = Replanner(stored).replan(
+        ObservedScene(scene, frozenset(), {}),
+        None,
+        stored.plan,
+        stored.plan.actions,
+        found,
+        first,
+        GOAL,
     )
     assert not mended.keeps and mended.plan is not None, mended.explanation
+
+
+def gone(stored: Stored, name: str, goal: Formula) -> tuple[str, ...]:
+    """What is said when a body has gone."""
+    scene = stored.loaded.scene
+    bodies = {other: body for other, body in scene.bodies.items() if other != name}
+    truth = ObservedScene(replace(scene, bodies=MappingProxyType(bodies)), frozenset(), {})
+    return (
+        Replanner(stored)
+        .replan(
+            truth, None, stored.plan, stored.plan.actions, [Deviation("gone", name, "it is gone")],
+            expectation(stored), goal,
+        )
+        .explanation
+    )  # fmt: skip
+
+
+def test_what_the_goal_names_and_is_gone_is_missed(stored: Stored) -> None:
+    """The goal as a formula says what it names; a predicate may be called like a body."""
+    missed = ("Can is gone, and the goal needs it",)
+    assert gone(stored, "Can", GOAL) == missed
+    assert gone(stored, "Can", Not(Exists((Parameter("?x"),), GOAL))) == missed
+    assert gone(stored, "Can", Atom("can", ("block",))) != missed
 
 
 def test_what_is_accepted_is_expected_until_the_plan_moves_it(stored: Stored) -> None:

@@ -9,12 +9,13 @@ from dataclasses import replace
 import pytest
 
 from tamp.execution.deviation import Deviation
-from tamp.execution.monitoring import Touch
-from tamp.execution.report import Displaced, Done, Execution, GoalFact
+from tamp.execution.monitoring import ContactEvent
+from tamp.execution.report import ActionOutcome, BodyDisplacement, Execution, GoalFact
 
-MOVE = Done("move", (), 0.0, 3.25, 0.0012, math.radians(0.5))
-PICK = Done(
-    "pick", ("cup",), 3.25, 5.0, 0.0, 0.0, (Touch("hand", "box", 12.4),), (Displaced("box", 0.021, math.radians(30)),),
+MOVE = ActionOutcome("move", (), 0.0, 3.25, 0.0012, math.radians(0.5))
+PICK = ActionOutcome(
+    "pick", ("cup",), 3.25, 5.0, 0.0, 0.0, (ContactEvent("hand", "box", 12.4),),
+    (BodyDisplacement("box", 0.021, math.radians(30)),),
     (Deviation("lost", "cup", "cup is not in the hand"),), "cup is dropped", "planned anew",
 )  # fmt: skip
 RUN = Execution(

@@ -12,7 +12,7 @@ from grounding.cli import BAD_INPUT, DONE, run
 from grounding.dataset import Dataset
 from grounding.exploration import KINDS, RESTED, STAYED, Exploration, Explorer, explore, moved
 from grounding.model import Model
-from grounding.oracles import ItemOf, Verdict, settled
+from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
 from grounding.relation_scene import RelationScene
 from grounding.scenes import Scenes
@@ -35,9 +35,9 @@ def test_labels_are_what_happened(data: Dataset) -> None:
     items = ItemOf()
     with open_drops() as drops:
         for example in data:
-            verdict = settled(example.situation, example.situation.body.matrix[None], drops, items)[
-                0
-            ]
+            verdict = drop_verdicts(
+                example.situation, example.situation.body.matrix[None], drops, items
+            )[0]
             assert (verdict is Verdict.HOLDS) == example.holds == (example.kind in (STAYED, RESTED))
             assert example.holds or verdict == example.kind
             pose, others = example.situation.body, Obstacles(example.situation.others)
@@ -62,7 +62,7 @@ def test_a_grounding_learned_from_it_proposes(tmp_path: Path) -> None:
         for _ in range(12):
             situation = scenes.draw(rng).situation(np.eye(4))
             held += (
-                settled(situation, model.propose(situation, 1, rng), drops, items)[0]
+                drop_verdicts(situation, model.propose(situation, 1, rng), drops, items)[0]
                 is Verdict.HOLDS
             )
     assert held >= 6

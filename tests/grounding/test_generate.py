@@ -11,7 +11,7 @@ from grounding import chunks as module
 from grounding.dataset import Dataset, read_dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate, kinds_of
-from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
+from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle
 from grounding.separation import Obstacles, separations
 from tamp.errors import InputError
 from tamp.simulation.engines import open_drops
@@ -29,7 +29,7 @@ def test_labels_are_what_physics_says(data: Dataset) -> None:
     with open_drops() as drops:
         for example in data:
             pose = example.situation.body.matrix[None]
-            holds = settled(example.situation, pose, drops, items)[0] is Verdict.HOLDS
+            holds = drop_verdicts(example.situation, pose, drops, items)[0] is Verdict.HOLDS
             assert holds == example.holds == (example.kind in POSITIVE), example.kind
             assert not holds or paper_oracle(example.situation, pose)[0]
     assert data.holds.sum() == len(data) / 2

@@ -53,7 +53,8 @@ def test_a_problem_names_files_from_where_it_is(weights: Path, root: Path, tmp_p
         ("on={}:alnoe", "unknown sampler"),
         (
             "lying=fast",
-            "unknown relation 'lying'. Choices: on, inside. Of one's own: lying=FILE.safetensors",
+            "unknown relation 'lying'. Choices: on, inside, stack, pack, left_of, between. "
+            "Of one's own: lying=FILE.safetensors",
         ),
     ],
 )

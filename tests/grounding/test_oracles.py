@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grounding.body_geometry import BodyGeometry
-from grounding.oracles import ItemOf, Verdict, paper_oracle, paper_verdicts, settled
+from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle, paper_verdicts
 from grounding.relation_scene import Placed, Region, RelationScene
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part
@@ -86,7 +86,7 @@ def test_each_failure_has_its_name(
     assert paper_verdicts(situation, pose[None]) == [paper]
     assert paper_oracle(situation, pose[None]).tolist() == [paper is Verdict.HOLDS]
     with open_drops() as drops:
-        assert settled(situation, pose[None], drops, ItemOf()) == [physics]
+        assert drop_verdicts(situation, pose[None], drops, ItemOf()) == [physics]
 
 
 def test_every_failure_occurs_above() -> None:

@@ -22,6 +22,7 @@ from tamp.symbolic.pddl.parser import (
     parse_goal,
     parse_streams,
 )
+from tamp.symbolic.pddl.relations import SAMPLE
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tests.random_streams.oracle import World
@@ -82,7 +83,9 @@ def stream_task(problem: Problem) -> StreamTask:
     for stream in declared.streams:
         types = output_types(stream, domain)
         function = stream_function(problem, sources[stream.name])
-        bound.append(BoundStream(stream, function, tuple(types[name] for name in stream.outputs)))
+        outputs = tuple(types[name] for name in stream.outputs)
+        advises = stream.name.startswith(SAMPLE)
+        bound.append(BoundStream(stream, function, outputs, advises))
     functions = tuple(
         BoundFunction(one, partial(problem.price, one.name)) for one in declared.functions
     )

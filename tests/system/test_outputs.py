@@ -73,6 +73,9 @@ def folder(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (here / "plan.json").write_text(json.dumps(plan), encoding="utf-8")
     (here / "link.json").symlink_to("plan.json")
     os.link(here / "p.yaml", here / "hard.yaml")
+    named = f"samplers: {{on: near.safetensors}}\n{(here / 'p.yaml').read_text(encoding='utf-8')}"
+    (here / "named.yaml").write_text(named, encoding="utf-8")
+    (here / "near.safetensors").write_bytes(b"weights")
     monkeypatch.chdir(here)
     return here
 
@@ -113,6 +116,10 @@ Command = Callable[[list[str]], int]
         (view, "plan.json --html hard.yaml"),
         (view, "p.yaml --html can.obj"),
         (view, "p.yaml --html x.png --png x.png"),
+        (view, "p.yaml --html cupboard.pddl"),
+        (view, "p.yaml --html cupboard.streams.pddl"),
+        (view, "named.yaml --html ./near.safetensors"),
+        (view, "plan.json --problem p.yaml --html cupboard.streams.pddl"),
         (bench, "run --problems p.yaml --samplers default --seeds 1 --out can.obj"),
         (bench, "run --problems p.yaml --samplers default --seeds 1 --out cupboard.pddl"),
         (learn, "collect on p.yaml --out can.npz"),

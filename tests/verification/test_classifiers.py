@@ -67,6 +67,13 @@ def test_a_name_that_only_the_planner_knows_is_refused() -> None:
         classifiers_of(["on=uniform:alone"])
 
 
+def test_a_relation_that_ships_is_named() -> None:
+    (classifier,) = classifiers_of(["Stack=learned:alone"]).values()
+    assert classifier is not None
+    with pytest.raises(InputError, match=r"Choices: learned. Did you mean 'learned'\?"):
+        classifiers_of(["stack=lerned"])
+
+
 def test_weights_that_are_not_there_are_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"gone.safetensors"):
         classifiers_of([f"on={tmp_path / 'gone.safetensors'}"])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
-from tamp.verification.formulas import show
 from tamp.verification.semantics import Semantics, State
 
 DOMAIN = """
@@ -84,7 +84,7 @@ def test_unmet_parts_are_named(semantics: Semantics) -> None:
     carry = semantics.actions["carry"]
     assert semantics.unmet(carry, ("a", "yard", "dock"), State.of(START)) == []
     unmet = semantics.unmet(carry, ("c", "dock", "dock"), State.of(START))
-    assert [show(part) for part in unmet] == [
+    assert [to_text(part) for part in unmet] == [
         "(clear c)",
         "(not (= dock dock))",
         "(linked dock dock)",

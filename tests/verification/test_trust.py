@@ -1,248 +1,271 @@
-"""The verdict says what it rests on that could not be checked, and the judge asks the classifiers that it is given."""
+"""What a verdict rests on unchecked: which predicates, by which domain, by which streams."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Callable
+from collections.abc import Collection, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-import tamp
-from tamp.commands.verify import main
-from tamp.geometric.samplers.python_file import python_grounding
-from tamp.verification.verify import verify
-from tests.own import PYTHON, SAMPLED, Proposing, write_domain, write_problem
+from tamp.errors import InputError
+from tamp.plan.read import PlanFile, Source, TimedAction
+from tamp.plan.sources import sha256
+from tamp.symbolic.pddl.parser import parse_domain, parse_goal, parse_streams
+from tamp.symbolic.pddl.structs import Domain, Fact, StreamFile
+from tamp.system.files import shipped
+from tamp.verification.trust import (
+    certifiable,
+    domain_note,
+    other_files,
+    read_streams,
+    streams_file,
+    trusted_relations,
+)
 
-Written = Callable[..., Path]
+DOMAIN = """
+(define (domain d)
+  (:requirements :adl :derived-predicates :typing)
+  (:types thing movable pose)
+  (:predicates (clean ?x - thing) (dry ?x - thing) (washed ?x - thing) (soaped ?x - thing)
+    (neat ?x - thing) (movable ?x) (looked) (pose ?x - thing ?p - pose)
+    (stood ?x - thing ?p - pose) (at-pose ?x - thing ?p - pose) (upright ?x - thing))
+  (:action wash :parameters (?x - thing) :precondition (and (clean ?x) (movable ?x))
+    :effect (and (washed ?x) (looked) (when (dry ?x) (looked))))
+  (:action soap :parameters (?x - thing) :precondition (soaped ?x) :effect (washed ?x))
+  (:derived (neat ?x - thing) (and (dry ?x) (not (soaped ?x))))
+  (:derived (upright ?x - thing) (exists (?p - pose) (and (stood ?x ?p) (at-pose ?x ?p)))))
+"""
+STREAMS = """
+(define (stream d)
+  (:stream test-clean :inputs (?x) :domain (movable ?x) :certified (clean ?x))
+  (:stream test-soaped :inputs (?x) :domain (movable ?x) :certified (soaped ?x))
+  (:stream sample-upright :inputs (?x) :domain (movable ?x) :outputs (?p)
+    :certified (and (pose ?x ?p) (stood ?x ?p))))
+"""
 
 
 @pytest.fixture
-def written(root: Path, tmp_path: Path) -> Written:
-    """Makes a plan file for a goal; the classifier is in upright.py beside it."""
-    write_domain(root, tmp_path, SAMPLED)
-    (tmp_path / "upright.py").write_text(PYTHON)
-
-    def write(goal: str, *, domain: str | None = None, streams: Path | None = None) -> Path:
-        problem = tamp.load_problem(
-            write_problem(tmp_path, goal),
-            domain,
-            streams=streams,
-            groundings={"upright": python_grounding(tmp_path / "upright.py")},
-        )
-        return tamp.write_plan(tamp.solve(problem, max_time=60.0, seed=0), tmp_path / "plan.json")
-
-    return write
+def domain() -> Domain:
+    return parse_domain(DOMAIN)
 
 
-def changed(plan: Path, **entries: Any) -> Path:
-    document = json.loads(plan.read_text())
-    plan.write_text(json.dumps({**document, **entries}))
-    return plan
+@pytest.fixture
+def streams(domain: Domain) -> StreamFile:
+    return parse_streams(STREAMS, domain, None)
 
 
-def ask(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
-    code = main(list(words))
-    said = capsys.readouterr()
-    return code, said.out + said.err
+def plan_of(
+    *,
+    actions: Sequence[str] = (),
+    initial: Sequence[Fact] = (),
+    certified: Sequence[Fact] = (),
+    sources: Sequence[Source] = (),
+    file: Path | None = None,
+) -> PlanFile:
+    timed = tuple(TimedAction(name, ("a",), 0.0, 0.0, 1.0, ()) for name in actions)
+    return PlanFile(
+        file, tuple(sources), "r", {"a": ("thing",)}, tuple(initial), "", {}, timed,
+        tuple(certified), 0.0, 0.0,
+    )  # fmt: skip
 
 
-def test_strict_wants_the_classifier(written: Written, capsys: pytest.CaptureFixture[str]) -> None:
-    plan = written("(upright tea table)")
-    sampler = ["--sampler", f"upright={plan.parent / 'upright.py'}"]
-    code, said = ask(capsys, str(plan))
-    assert code == 0 and said.startswith("plan.json holds, on trust: upright: 0 actions")
-    code, said = ask(capsys, str(plan), "--strict")
-    assert (
-        code == 1
-        and "plan.json holds, on trust: upright" in said
-        and "not accepted, for --strict" in said
-    )
-    code, said = ask(capsys, str(plan), "--strict", "--json")
-    found = json.loads(said)
-    assert code == 1 and found["holds"] and found["on_trust"] == ["upright"]
-    assert not found["checked"] and not found["accepted"] and found["trusted"] == {"stood": 1}
-    code, said = ask(capsys, str(plan), "--strict", *sampler)
-    assert code == 0 and said.startswith("plan.json holds: 0 actions") and "upright asked" in said
-    code, said = ask(capsys, str(plan), "--strict", "--json", *sampler)
-    found = json.loads(said)
-    assert code == 0 and found["accepted"] and found["checked"] and found["asked"]["upright"] == 4
-    assert ask(capsys, str(plan), "--strict", "--quiet") == (1, "")
+def trusted(
+    domain: Domain,
+    goal: str,
+    streams: StreamFile | None = None,
+    decided: Collection[str] = (),
+    given: Collection[Fact] = (),
+    **plan: Any,
+) -> tuple[str, ...]:
+    wanted = parse_goal(goal, domain, {"a": ("thing",)})
+    return trusted_relations(plan_of(**plan), domain, wanted, streams, decided, given)
 
 
-def test_a_false_fact_is_found_by_the_classifier_only(
-    written: Written, capsys: pytest.CaptureFixture[str]
+CLEAN, SOAPED, DRY = (("clean", "a"),), (("soaped", "a"),), (("dry", "a"),)
+
+
+def test_what_only_the_plan_states_and_the_goal_asks_is_on_trust(domain: Domain) -> None:
+    assert trusted(domain, "(clean a)", certified=CLEAN) == ("clean",)
+    assert trusted(domain, "(clean a)", initial=CLEAN) == ("clean",)
+    assert trusted(domain, "(clean a)") == ()  # nothing states it: it does not hold
+    assert trusted(domain, "(dry a)", certified=CLEAN) == ()  # nobody asks
+
+
+def test_what_the_problem_states_or_the_judge_decides_is_not_on_trust(domain: Domain) -> None:
+    assert trusted(domain, "(clean a)", initial=CLEAN, given=CLEAN) == ()
+    assert trusted(domain, "(clean a)", certified=CLEAN, decided={"clean"}) == ()
+
+
+def test_what_must_not_hold_is_on_trust_where_streams_could_certify_it(
+    domain: Domain, streams: StreamFile
 ) -> None:
-    """Nobody but the plan says that the milk stands, which lies."""
-    plan = written("(upright tea table)")
-    document = json.loads(plan.read_text())
-    (plan.parent / "mine.yaml").write_text(
-        (plan.parent / "mine.yaml").read_text().replace("upright tea", "upright milk")
+    assert trusted(domain, "(not (soaped a))", streams) == ("soaped",)
+    assert trusted(domain, "(not (dry a))", streams) == ()
+    # without streams, what the plan states of others tells which could be certified
+    assert trusted(domain, "(not (soaped a))") == ()
+    assert trusted(domain, "(not (soaped a))", certified=(("soaped", "b"),)) == ("soaped",)
+
+
+def test_only_actions_of_the_plan_count_with_their_conditions(domain: Domain) -> None:
+    stated = CLEAN + SOAPED
+    assert trusted(domain, "(and)", certified=stated) == ()
+    assert trusted(domain, "(and)", certified=stated, actions=["wash"]) == ("clean",)
+    assert trusted(domain, "(and)", certified=stated, actions=["soap", "wash"]) == (
+        "clean",
+        "soaped",
     )
-    told = written("(upright milk shelf)")
-    other = json.loads(told.read_text())
-    problem = write_problem(plan.parent, "(upright milk table)")
-    document["goal"] = "(upright milk table)"
-    document["initial"].append(["stood", "milk", "milk_start", "table"])
-    document["inputs"] = {**other["inputs"], "problem": other["inputs"]["problem"]}
-    from tamp.plan.sources import sha256
 
-    document["inputs"]["problem"] = {"path": str(problem), "sha256": sha256(problem)}
-    plan.write_text(json.dumps(document))
-    code, said = ask(capsys, str(plan))
-    assert code == 0 and "holds, on trust: upright" in said, said
-    code, said = ask(capsys, str(plan), "--sampler", f"upright={plan.parent / 'upright.py'}")
-    assert code == 1, said
-    assert (
-        "(stood milk milk_start table) does not hold: the classifier of 'upright' denies it" in said
+
+def test_a_conditional_effect_rests_on_its_condition_both_ways(domain: Domain) -> None:
+    """Whether it happens or not: something may ask for either."""
+    assert trusted(domain, "(and)", certified=DRY, actions=["wash"]) == ("dry",)
+    certifies = parse_streams(
+        "(define (stream d) (:stream t :inputs (?x) :domain (movable ?x) :certified (dry ?x)))",
+        domain,
+        None,
     )
-    assert "(upright milk table) does not follow from the facts at the end" in said
+    assert trusted(domain, "(and)", certifies, actions=["wash"]) == ("dry",)
 
 
-def test_a_fact_left_out_is_found_as_well(
-    written: Written, capsys: pytest.CaptureFixture[str]
+def test_rules_are_followed_with_their_signs(domain: Domain, streams: StreamFile) -> None:
+    assert trusted(domain, "(neat a)", streams, certified=DRY) == ("dry", "soaped")
+    assert trusted(domain, "(not (neat a))", streams, certified=SOAPED) == ("soaped",)
+    assert trusted(domain, "(neat a)", certified=DRY) == ("dry",)
+
+
+def test_fluents_types_and_kinds_are_never_on_trust(domain: Domain) -> None:
+    stated = (("movable", "a"), ("washed", "a"), ("thing", "a"), ("neat", "a"))
+    goal = "(and (washed a) (neat a) (= a a))"
+    assert trusted(domain, goal, certified=stated, actions=["wash"]) == ()
+
+
+def test_a_fact_about_poses_is_told_by_the_name_of_its_relation(
+    domain: Domain, streams: StreamFile
 ) -> None:
-    """Nothing is said of the tea, which stands; so that it does not stand is taken on trust."""
-    plan = written("(not (upright milk table))")
-    problem = write_problem(plan.parent, "(not (upright tea table))")
-    document = json.loads(plan.read_text())
-    initial = [fact for fact in document["initial"] if fact[0] != "stood"]
-    from tamp.plan.sources import sha256
-
-    inputs = {**document["inputs"], "problem": {"path": str(problem), "sha256": sha256(problem)}}
-    changed(plan, goal="(not (upright tea table))", initial=initial, inputs=inputs)
-    code, said = ask(capsys, str(plan))
-    assert code == 0 and "holds, on trust: upright" in said, said
-    code, said = ask(capsys, str(plan), "--sampler", f"upright={plan.parent / 'upright.py'}")
-    assert (
-        code == 1 and "(not (upright tea table)) does not follow from the facts at the end" in said
-    ), said
+    stated = (("stood", "a", "p"),)
+    assert trusted(domain, "(upright a)", streams, certified=stated) == ("upright",)
+    assert trusted(domain, "(upright a)", certified=stated) == ("stood",)
 
 
-def test_only_what_the_verdict_rests_on_is_named(written: Written) -> None:
-    assert verify(written("(on tea shelf)")).checked
-
-
-def test_without_the_streams_the_predicate_is_named(written: Written) -> None:
-    plan = written("(upright tea table)")
-    (plan.parent / "mine.streams.pddl").unlink()
-    report = verify(plan)
-    assert report.holds and report.on_trust == ("stood",)
-    assert report.other_files == ("without the streams mine.streams.pddl, which are not there",)
-    with pytest.raises(tamp.InputError, match="Give them: --streams FILE"):
-        verify(plan, classifiers={"upright": python_grounding(plan.parent / "upright.py")})
-
-
-def test_another_domain_and_other_streams_are_named(
-    root: Path, written: Written, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_certifiable_is_what_streams_certify_of_the_static(
+    domain: Domain, streams: StreamFile
 ) -> None:
-    easy = write_domain(root, tmp_path, SAMPLED, name="easy")
-    easy.write_text(easy.read_text().replace("(not (loaded ?o)) ", ""))
-    plan = written("(on tea shelf)", domain=str(easy))
-    code, said = ask(capsys, str(plan))
-    assert (
-        code == 0
-        and "plan.json holds, by the domain easy.pddl, not the problem's mine.pddl" in said
-    ), said
-    assert ask(capsys, str(plan), "--strict", "--quiet")[0] == 1
-    assert verify(written("(on tea shelf)")).checked
+    assert certifiable(plan_of(), domain, streams) == {"clean", "soaped", "pose", "stood"}
+    named = [Source("streams", Path("s"), "")]
+    static = {"clean", "soaped", "pose", "stood", "dry", "at-pose"}
+    assert certifiable(plan_of(sources=named), domain, None) == static
+    assert certifiable(plan_of(certified=(*CLEAN, ("washed", "a"))), domain, None) == {"clean"}
+
+
+def source(role: str, file: Path, text: str | None = None) -> Source:
+    """The plan's word about a file, with another text's hash if one is given."""
+    if text is None:
+        return Source(role, file, sha256(file))
+    other = file.with_suffix(".other")
+    other.write_text(text)
+    return Source(role, file, sha256(other))
+
+
+def test_which_streams_are_read(tmp_path: Path) -> None:
+    mine, beside = tmp_path / "mine.pddl", tmp_path / "mine.streams.pddl"
+    assert streams_file(plan_of(), None, mine) is None
+    beside.write_text(STREAMS)
+    assert streams_file(plan_of(), None, mine) == beside
+    assert streams_file(plan_of(), None) is None
+
+    gone = Source("streams", tmp_path / "gone" / "mine.streams.pddl", "")
+    assert streams_file(plan_of(sources=[gone]), None, mine) is None
+    plan = plan_of(sources=[gone], file=tmp_path / "plan.json")
+    assert streams_file(plan, None) == beside  # of that name beside the plan
 
     other = tmp_path / "other.streams.pddl"
-    other.write_text((tmp_path / "mine.streams.pddl").read_text() + "; of another opinion\n")
-    plan = written("(on tea shelf)", streams=other)
-    assert verify(plan).other_files == (
-        "by the streams other.streams.pddl, not the problem's mine.streams.pddl",
-    )
-    other.write_text(other.read_text() + "; and now of another one\n")
-    assert "not those that the plan was made with" in verify(plan).other_files[0]
-    mine = tmp_path / "mine.streams.pddl"
-    assert "not those that the plan was made with" in verify(plan, streams=mine).other_files[0]
+    other.write_text(STREAMS)
+    assert streams_file(plan_of(sources=[source("streams", beside)]), other, mine) == other
+    with pytest.raises(InputError, match="no such file"):
+        streams_file(plan_of(), tmp_path / "none.pddl", mine)
 
 
-def test_a_plan_that_names_no_streams_states_no_more_than_the_problem(
-    root: Path, written: Written
-) -> None:
-    """A fact that no stream certifies, and the problem does not state, is wrong as it ever was."""
-    plan = written("(upright tea table)")
-    document = json.loads(plan.read_text())
-    del document["inputs"]["streams"]
-    changed(plan, inputs=document["inputs"])
-    assert verify(plan).on_trust == ("upright",)  # those beside the domain
-    changed(
-        plan,
-        initial=[*document["initial"], ["reachable", "milk", "milk_start"], ["loaded", "milk"]],
-    )
-    assert any("does not imply (loaded milk)" in one.message for one in verify(plan).violations)
-    (plan.parent / "mine.streams.pddl").unlink()
-    assert any("does not imply (stood tea" in one.message for one in verify(plan).violations)
+def test_streams_that_changed_since_and_misfit_are_left_out(domain: Domain, tmp_path: Path) -> None:
+    file = tmp_path / "d.streams.pddl"
+    file.write_text(STREAMS)
+    read = read_streams(plan_of(), file, domain)
+    assert read is not None and next(one.name for one in read.streams) == "test-clean"
+    assert read_streams(plan_of(), None, domain) is None
+
+    file.write_text("(define (stream d) (:stream s :inputs (?x) :certified (unheard ?x)))")
+    changed = plan_of(sources=[source("streams", file, STREAMS)])
+    assert read_streams(changed, file, domain) is None
+    for ours in (plan_of(), plan_of(sources=[source("streams", file)])):
+        with pytest.raises(InputError, match="unheard"):
+            read_streams(ours, file, domain)
+    file.write_bytes(b"\xff\xfe")
+    with pytest.raises(InputError, match="cannot be read"):
+        read_streams(changed, file, domain)
 
 
-def test_a_problem_without_a_domain_has_a_note(
-    root: Path, written: Written, tmp_path: Path
-) -> None:
-    written("(on tea shelf)")
-    path = tmp_path / "mine.yaml"
-    path.write_text(path.read_text().replace("domain: mine.pddl\n", ""))
-    upright = python_grounding(tmp_path / "upright.py")
-    problem = tamp.load_problem(path, tmp_path / "mine.pddl", groundings={"upright": upright})
-    plan = tamp.write_plan(tamp.solve(problem, max_time=60.0, seed=0), tmp_path / "plan.json")
-    report = verify(plan)
-    assert report.checked and report.notes == (
-        "the problem names no domain; judged by mine.pddl, as the plan says",
-    )
-    assert verify(plan, domain=tmp_path / "mine.pddl").notes == ()
+def loaded(folder: Path, domain: str | None) -> Any:
+    return SimpleNamespace(domain=domain, path=folder / "problem.yaml")
 
 
-@pytest.mark.parametrize(
-    ("sampler", "message"),
-    [
-        ("upright", "--sampler wants RELATION=FILE"),
-        ("upright=gone.py", "no such file"),
-        ("upright=transfer", "the judge knows no sampler 'transfer'"),
-        ("upright=empty.py", "no object 'grounding' with the method classify"),
-        ("on=upright.py", "'on' is decided by the bodies' geometry"),
-        ("uprigth=upright.py", "the streams have no relation 'uprigth'"),
-        ("upright=gone.safetensors", "no such weight file"),
-    ],
-)
-def test_what_is_wrong_with_a_classifier(
-    sampler: str,
-    message: str,
-    written: Written,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    plan = written("(upright tea table)")
-    monkeypatch.chdir(plan.parent)
-    Path("empty.py").write_text("")
-    code, said = ask(capsys, "plan.json", "--sampler", sampler)
-    assert code == 2 and message in said, said
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    """The problem's domain and its streams."""
+    mine, beside = tmp_path / "mine.pddl", tmp_path / "mine.streams.pddl"
+    mine.write_text(DOMAIN)
+    beside.write_text(STREAMS)
+    return mine, beside
 
 
-class Silent:
-    """Cannot tell of anything."""
-
-    def classify(self, scene: tamp.Scene, arguments: object) -> float:
-        return float("nan")
+NOBODY: dict[str, Path | None] = {"domain": None, "streams": None}
 
 
-def test_one_that_cannot_tell_is_no_check(written: Written) -> None:
-    report = verify(written("(upright tea table)"), classifiers={"upright": Silent()})
-    assert report.holds and report.on_trust == ("upright",)
-    assert any("it cannot tell of (upright " in note for note in report.notes)
+def test_the_problems_own_files_are_no_others(files: tuple[Path, Path], tmp_path: Path) -> None:
+    mine, beside = files
+    plan = plan_of(sources=[source("streams", beside)])
+    assert other_files(plan, loaded(tmp_path, "mine.pddl"), mine, beside, NOBODY) == ()
+    assert other_files(plan, loaded(tmp_path, None), mine, beside, NOBODY) == ()
 
 
-def test_what_a_plan_makes_true_needs_no_classifier_and_is_on_trust(
-    root: Path, tmp_path: Path
-) -> None:
-    write_domain(root, tmp_path, SAMPLED, actions="")
-    (tmp_path / "upright.py").write_text(PYTHON)
-    upright = python_grounding(tmp_path / "upright.py")
-    problem = tamp.load_problem(
-        write_problem(tmp_path, "(upright milk shelf)"), groundings={"upright": Proposing(upright)}
-    )
-    plan = tamp.write_plan(tamp.solve(problem, max_time=60.0, seed=0), tmp_path / "plan.json")
-    assert verify(plan).on_trust == ("upright",)
-    report = verify(plan, classifiers={"upright": upright})  # type: ignore[dict-item]
-    assert report.holds and report.checked
+def test_another_domain_is_named(files: tuple[Path, Path], tmp_path: Path) -> None:
+    mine, beside = files
+    other = tmp_path / "other.pddl"
+    other.write_text(DOMAIN + ";")
+    plan = plan_of(sources=[source("streams", beside)])
+    told = other_files(plan, loaded(tmp_path, "mine.pddl"), other, beside, NOBODY)
+    assert told == ("by the domain other.pddl, not the problem's mine.pddl",)
+    other.write_text(DOMAIN)  # a copy is the same
+    assert other_files(plan, loaded(tmp_path, "mine.pddl"), other, beside, NOBODY) == ()
+    told = other_files(plan, loaded(tmp_path, "gone.pddl"), mine, beside, NOBODY)
+    assert told == ("by the domain mine.pddl; the problem's gone.pddl is not there",)
+
+
+def test_other_streams_are_named(files: tuple[Path, Path], tmp_path: Path) -> None:
+    mine, beside = files
+    problem = loaded(tmp_path, "mine.pddl")
+    changed = plan_of(sources=[source("streams", beside, "x")])
+    (told,) = other_files(changed, problem, mine, beside, NOBODY)
+    assert "mine.streams.pddl, which are not those that the plan was made with" in told
+    (told,) = other_files(changed, problem, mine, None, NOBODY)
+    assert told == "without the streams mine.streams.pddl, which are not there"
+    assert other_files(plan_of(), problem, mine, None, NOBODY) == ()
+
+    theirs = tmp_path / "theirs.streams.pddl"
+    theirs.write_text(STREAMS + ";")
+    with_theirs = plan_of(sources=[source("streams", theirs)])
+    (told,) = other_files(with_theirs, problem, mine, theirs, NOBODY)
+    assert told == "by the streams theirs.streams.pddl, not the problem's mine.streams.pddl"
+    beside.unlink()
+    (told,) = other_files(with_theirs, problem, mine, theirs, NOBODY)
+    assert told == "by the streams theirs.streams.pddl, as the plan says"
+    assert other_files(with_theirs, problem, mine, theirs, {**NOBODY, "streams": theirs}) == ()
+
+
+def test_a_domain_that_only_the_plan_names_has_a_note(tmp_path: Path) -> None:
+    mine = tmp_path / "mine.pddl"
+    (told,) = domain_note(loaded(tmp_path, None), mine, given=False)
+    assert told == "the problem names no domain; judged by mine.pddl, as the plan says"
+    assert domain_note(loaded(tmp_path, "mine.pddl"), mine, given=False) == ()
+    assert domain_note(loaded(tmp_path, None), mine, given=True) == ()
+    assert domain_note(loaded(tmp_path, None), shipped("domains") / "cupboard.pddl", False) == ()

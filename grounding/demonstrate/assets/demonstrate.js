@@ -130,6 +130,7 @@ function nameTags(view) {
       tag(view, "place " + place.name, state.records.relation.arguments[argument].name + ": " + place.name, at, argument, shown);
     }
   });
+  if (state.stage.front) tag(view, "front", "front", state.stage.front, -1, shown);
   for (const [key, element] of labels) if (!shown.has(key)) element.hidden = true;
 }
 
@@ -333,6 +334,11 @@ async function label(holds) {
 
 async function nextScene() { take(await ask("next", {})); }
 
+// Left, right and behind are said by who stands before the furniture: on the side from which the picture is seen.
+async function frontHere() {
+  if (take(await ask("front", about({ yaw: camera.yaw })))) toast("the front is here now: left, right and behind are said from this side");
+}
+
 async function askMe() {
   if (!state.records.learned) return;
   toast("looking for a telling scene, some seconds \u2026", "long");
@@ -528,13 +534,14 @@ const DO = {
   lower: (body, fine) => raise(body, fine ? -0.002 : -0.02),
   snap: (body) => { remember(); return settle(body, "put_down"); },
   drop: (body) => { remember(); return settle(body, "drop"); },
+  front: frontHere,
 };
-const KEYS = { z: "undo", y: "redo", q: "left", e: "right", f: "face", t: "tilt", r: "raise", v: "lower", s: "snap", d: "drop" };
+const KEYS = { z: "undo", y: "redo", q: "left", e: "right", f: "face", t: "tilt", r: "raise", v: "lower", s: "snap", d: "drop", g: "front" };
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
 function act(name, fine) {
   const body = selected();
-  if (name === "undo" || name === "redo") DO[name]();
+  if (["undo", "redo", "front"].includes(name)) DO[name]();
   else if (body) DO[name](body, fine);
 }
 

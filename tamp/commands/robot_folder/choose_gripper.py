@@ -11,6 +11,7 @@ from tamp.commands.robot_folder.gripper import (
     Gripper,
     along,
     outward_axis,
+    suction_cup,
     two_fingers,
 )
 from tamp.commands.robot_folder.hand import find_hand, tip_is_hand
@@ -20,6 +21,9 @@ from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
 
+FINGER_FORCE = 50.0
+"""Newtons with which a finger presses where nobody says more."""
+
 
 def named_fingers(description: Description, wanted: Wanted) -> tuple[Joint, Joint] | None:
     """Find the joints of the URDF's own fingers; None where ours are wanted.
@@ -27,8 +31,16 @@ def named_fingers(description: Description, wanted: Wanted) -> tuple[Joint, Join
     Raises:
         InputError: One is unknown, or turns; they hang on two links.
     """
+    if wanted.suction is not None:
+        for option, given in (("--gripper", wanted.fingers), ("--opening", wanted.opening)):
+            if given is not None:
+                raise InputError(
+                    f"{option} is of fingers, and --suction makes a gripper without any",
+                    remedy=f"Leave {option} or --suction out",
+                )
     if wanted.fingers is None:
         return None
+
     found: list[Joint] = []
     for name in wanted.fingers:
         if name not in description.joints:
@@ -91,12 +103,16 @@ def choose_gripper(
     """Make ours, or take the URDF's own: what hangs on the tip, but for the fingers, is the hand,
     in the tip's frame.
     """
+    force = FINGER_FORCE if wanted.force is None else wanted.force
+    if wanted.suction is not None:
+        T = along(wanted.axis or outward_axis(arm))
+        return suction_cup(wanted.suction, wanted.force, T)
     if fingers is None:
         opening = 0.085 if wanted.opening is None else wanted.opening
-        return two_fingers(opening, wanted.force, along(wanted.axis or outward_axis(arm)))
+        return two_fingers(opening, force, along(wanted.axis or outward_axis(arm)))
     hand, joints, moved = find_hand(description, wanted.tip, fingers, wanted.fixed, bare)
     hulls = [
         joined([h for one in solids(group.elements, group.name) for h in one.hulls], group.name)
         for group in (hand, *moved)
     ]
-    return own_fingers(joints, hulls[0], (hulls[1], hulls[2]), Pose(), wanted.opening, wanted.force)
+    return own_fingers(joints, hulls[0], (hulls[1], hulls[2]), Pose(), wanted.opening, force)

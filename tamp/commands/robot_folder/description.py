@@ -74,15 +74,15 @@ def find_urdf(name: str) -> Path:
             return file
 
     if "/" not in name and not name.endswith(".urdf"):
-        known: dict[str, Path] = {}
+        robots: dict[str, Path] = {}
         for folder in sys.path:
             data = Path(folder) / "cmeel.prefix" / "share" / "example-robot-data" / "robots"
-            known |= {found.stem: found for found in sorted(data.glob("**/*.urdf"))}
-        if name in known:
-            return known[name]
-        if known:
+            robots |= {found.stem: found for found in sorted(data.glob("**/*.urdf"))}
+        if name in robots:
+            return robots[name]
+        if robots:
             raise InputError(f"no file and no robot of example-robot-data '{name}'", found=name,
-                             choices=tuple(sorted(known)))  # fmt: skip
+                             choices=tuple(sorted(robots)))  # fmt: skip
     raise InputError(
         f"no such file: {name}",
         remedy="Name a URDF or an MJCF, or install example-robot-data and name one of its robots",

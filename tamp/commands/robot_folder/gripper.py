@@ -1,7 +1,8 @@
-"""Grippers that a robot is made with: one of ours, bolted to the arm's tip, or the URDF's own."""
+"""Grippers that a robot is made with: ours, bolted to the arm's tip, or the URDF's own."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from tamp.commands.robot_folder.arm import Arm
 from tamp.commands.robot_folder.convex import hull_of
 from tamp.errors import InputError
+from tamp.geometric.robot.robot import Suction
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Hull
@@ -29,9 +31,25 @@ WIDEST = 0.2
 """Metres: the largest opening that our gripper can be made with."""
 
 
+SMALLEST_CUP, LARGEST_CUP = 0.003, 0.15
+"""Metres: radii of the rims that our suction gripper can be made with."""
+
+MOST_VACUUM, USUAL_VACUUM = 101_325.0, 60_000.0
+"""Newtons a square metre: the air's, which no cup exceeds, and that of a usual ejector."""
+
+CUP_TILT_RAD = math.radians(5.0)
+"""Radians by which what a cup seals on may lean against it."""
+
+STALK = 0.06
+"""Metres from the palm to the rim of our cup."""
+
+CUP_CORNERS = 24
+"""Corners of the prism that stands for a cup; its rim is within."""
+
+
 @dataclass(frozen=True, eq=False)
 class Gripper:
-    """A parallel gripper.
+    """A parallel gripper, or a suction cup, which has no fingers.
 
     Attributes:
         hand: The palm's hulls in the hand's frame.
@@ -43,17 +61,24 @@ class Gripper:
         force: Newtons with which each finger presses.
         speed: Metres a second of each finger.
         mass: Kilograms.
+        suction: The cup.
     """
 
     hand: tuple[Hull, ...]
-    fingers: tuple[Joint, Joint]
-    finger_hulls: tuple[tuple[Hull, ...], tuple[Hull, ...]]
+    fingers: tuple[Joint, ...]
+    finger_hulls: tuple[tuple[Hull, ...], ...]
     T_tip_hand: Pose
     T_hand_tool: Pose
     opening: float
     force: float
     speed: float
     mass: float = 0.9
+    suction: Suction | None = None
+
+    @property
+    def name(self) -> str:
+        """Return the name of the hand's link."""
+        return self.fingers[0].parent if self.fingers else "hand"
 
 
 def two_fingers(opening: float, force: float, T_tip_hand: Pose) -> Gripper:
@@ -84,6 +109,41 @@ def two_fingers(opening: float, force: float, T_tip_hand: Pose) -> Gripper:
     return Gripper(
         (palm,), (fingers[0], fingers[1]), (hulls[0], hulls[1]), T_tip_hand, tool, opening, force,
         0.05,
+    )  # fmt: skip
+
+
+def suction_cup(radius: float, force: float | None, T_tip_hand: Pose) -> Gripper:
+    """Make our suction gripper: a box that carries a cup whose rim has this radius.
+
+    Raises:
+        InputError: The cup is of no use, or is to pull with more than the air presses.
+    """
+    if not SMALLEST_CUP <= radius <= LARGEST_CUP:
+        raise InputError(
+            f"--suction {radius:g}: the rim of a cup has a radius of {SMALLEST_CUP:g} to "
+            f"{LARGEST_CUP:g} m",
+            remedy="Give its radius in metres",
+        )
+
+    area = math.pi * radius**2
+    if force is not None and force > MOST_VACUUM * area:
+        raise InputError(
+            f"--force {force:g}: a cup of radius {radius:g} m pulls with "
+            f"{MOST_VACUUM * area:.3g} N at most",
+            remedy="The air presses with no more: give a larger --suction or a smaller --force",
+        )
+
+    side = PALM[0]
+    palm = _box((side, side, PALM[2]), (0.0, 0.0, PALM[2] / 2))
+    angles = (np.arange(CUP_CORNERS) + 0.5) * 2 * math.pi / CUP_CORNERS
+    rim = radius / math.cos(math.pi / CUP_CORNERS)
+    ring = rim * np.column_stack([np.cos(angles), np.sin(angles)])
+    ends = [np.column_stack([ring, np.full(CUP_CORNERS, z)]) for z in (PALM[2], PALM[2] + STALK)]
+    cup = hull_of(np.concatenate(ends), "gripper")
+    return Gripper(
+        (palm, cup), (), (), T_tip_hand, Pose((0.0, 0.0, PALM[2] + STALK)), 0.0,
+        round(USUAL_VACUUM * area, 1) if force is None else force, 0.0, 0.6,
+        Suction(radius, CUP_TILT_RAD),
     )  # fmt: skip
 
 

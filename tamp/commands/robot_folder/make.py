@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from tamp.commands.robot_folder.arm import Arm, find_arm
 from tamp.commands.robot_folder.base import choose_base, on_our_box
@@ -17,6 +20,7 @@ from tamp.commands.robot_folder.description import read_description
 from tamp.commands.robot_folder.gripper import Gripper
 from tamp.commands.robot_folder.hand import tip_is_hand
 from tamp.commands.robot_folder.home import home
+from tamp.commands.robot_folder.kept_steps import kept, kept_hulls
 from tamp.commands.robot_folder.reach_table import table
 from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
 from tamp.commands.robot_folder.spheres import cover
@@ -30,6 +34,9 @@ from tamp.geometric.scene.scene import Hull, Part
 
 PER_SECOND = 2.0
 """A joint's acceleration as a multiple of its velocity, 1/s, where nobody says more."""
+
+REACHING = "from where the arm reaches what"
+"""The name of the step that takes longest."""
 
 Told = Callable[[str, float], None]
 
@@ -74,12 +81,10 @@ def make(wanted: Wanted, told: Told) -> Made:
     off = against_urdf(robot, description, arm, wanted.tip)
     robot = _refined(robot, meshes, told)
     robot, remarks = _placed(robot, wanted, arm)
-    reach = table(robot, lambda done: told("from where the arm reaches what", done))
+    reach = kept("reach", _unnamed(robot), partial(table, robot, partial(told, REACHING)))
     check_reach(reach["counts"], reach["heights"], robot)
 
-    allowed, warnings = allowed_pairs(
-        robot, lambda done: told("pairs of links that can meet", done)
-    )
+    allowed, warnings = _allowed(robot, told)
     robot = replace(robot, allowed=allowed)
     told("a home configuration", 0.0)
     robot = replace(robot, home=_home(robot, wanted))
@@ -126,9 +131,9 @@ def _robot(
         wanted.drive, wanted.height, wanted.mount, arm, links[0]
     )
 
-    fingers = (renamed[1], renamed[2])
+    hand, *fingers = renamed
     links += [
-        Link(renamed[0], _parts(gripper.hand)),
+        Link(hand, _parts(gripper.hand)),
         *(
             Link(finger.child, _parts(hulls))
             for finger, hulls in zip(fingers, gripper.finger_hulls, strict=True)
@@ -143,12 +148,12 @@ def _robot(
         links=(Link(base, (box,)), *links),
         base=base,
         foot=foot.name,
-        hand=renamed[0],
+        hand=hand,
         T_base_arm=T_base_arm,
         joints=arm.joints,
         T_flange_hand=arm.T_last_tip @ gripper.T_tip_hand,
         T_hand_tool=gripper.T_hand_tool,
-        fingers=fingers,
+        fingers=tuple(fingers),
         lower=lower,
         upper=upper,
         velocity=(*velocity, *arm.velocity),
@@ -161,6 +166,7 @@ def _robot(
         drive=wanted.drive,
         effort=arm.effort,
         force=gripper.force,
+        suction=gripper.suction,
         payload=wanted.payload,
     )
 
@@ -173,30 +179,57 @@ def _bound(joint: Joint, limit: float, inwards: float) -> float:
     )
 
 
-def _unused(gripper: Gripper, names: set[str]) -> tuple[str, Joint, Joint]:
+def _unused(gripper: Gripper, names: set[str]) -> tuple[str, *tuple[Joint, ...]]:
     """Give the gripper's links and joints names that the arm has not."""
-    hand = gripper.fingers[0].parent
+    hand = gripper.name
     mark = "gripper_" if names & {hand, *(one.child for one in gripper.fingers)} else ""
-    left, right = (
+    fingers = (
         replace(one, name=mark + one.name, parent=mark + hand, child=mark + one.child)
         for one in gripper.fingers
     )
-    return mark + hand, left, right
+    return mark + hand, *fingers
 
 
 def _parts(hulls: Sequence[Hull]) -> tuple[Part, ...]:
     return tuple(map(Part, hulls))
 
 
+def _unnamed(robot: Robot) -> Robot:
+    """Take a robot's name away, on which no step depends."""
+    return replace(robot, name="")
+
+
+def _allowed(robot: Robot, told: Told) -> tuple[frozenset[tuple[str, str]], tuple[str, ...]]:
+    """Find the pairs that are never checked, and sentences about them."""
+
+    def compute() -> dict[str, np.ndarray]:
+        pairs, remarks = allowed_pairs(robot, partial(told, "pairs of links that can meet"))
+        names = np.array(sorted(pairs), dtype=np.str_).reshape(-1, 2)
+        return {"pairs": names, "remarks": np.array(remarks, dtype=np.str_)}
+
+    found = kept("pairs", _unnamed(robot), compute)
+    pairs = frozenset((str(first), str(second)) for first, second in found["pairs"])
+    return pairs, tuple(map(str, found["remarks"]))
+
+
 def _refined(robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told) -> Robot:
     """Decompose the links whose hulls meet much more often than they do."""
-    known = {name: some for name, some in meshes.items() if some}
-    wrong = misjudged(robot, known, lambda done: told("hulls against meshes", done))
+    solids = {name: some for name, some in meshes.items() if some}
+
+    def compute() -> dict[str, np.ndarray]:
+        names = misjudged(robot, solids, partial(told, "hulls against meshes"))
+        return {"links": np.array(sorted(names), dtype=np.str_)}
+
+    wrong = kept("misjudged", (_unnamed(robot), solids), compute)["links"].tolist()
     links: list[Link] = []
     for link in robot.links:
         if link.name in wrong:
             told(f"convex pieces of {link.name}", 0.0)
-            hulls = [hull for one in known[link.name] for hull in pieces(one, link.name)]
+            hulls = [
+                hull
+                for one in solids[link.name]
+                for hull in kept_hulls("pieces", one, partial(pieces, one, link.name))
+            ]
             link = Link(link.name, _parts(joined(hulls, link.name)))
         links.append(link)
     return replace(robot, links=tuple(links))
@@ -206,7 +239,8 @@ def _home(robot: Robot, wanted: Wanted) -> tuple[float, ...]:
     if wanted.home is None:
         length = sum(math.hypot(*joint.origin.position) for joint in robot.joints[1:])
         length += math.hypot(*robot.T_flange_hand.position)
-        return home(robot, length)
+        found = kept("home", _unnamed(robot), lambda: {"q": np.array(home(robot, length))})
+        return tuple(found["q"].tolist())
     if len(wanted.home) != len(robot.joints):
         raise InputError(f"--home: {len(robot.joints)} numbers are expected, one a joint, not "
                          f"{len(wanted.home)}")  # fmt: skip
@@ -231,7 +265,12 @@ def _covers(robot: Robot, told: Told) -> dict[tuple[str, int], tuple[Array, floa
     ]
     for done, (name, number, hull) in enumerate(parts):
         told("spheres around the links", done / len(parts))
-        spheres = cover(hull)
-        if spheres is not None:
-            found[name, number] = spheres
+        spheres = kept("cover", hull, partial(_cover, hull))
+        if spheres:
+            found[name, number] = spheres["spheres"], float(spheres["slack"])
     return found
+
+
+def _cover(hull: Hull) -> dict[str, np.ndarray]:
+    found = cover(hull)
+    return {} if found is None else {"spheres": found[0], "slack": np.array(found[1])}

@@ -20,7 +20,8 @@ class Wanted:
         fingers: Two prismatic joints of the URDF's own gripper; without them ours is bolted to
             the tip.
         opening: The gripper's largest, metres.
-        force: With which each finger presses, newtons.
+        force: With which each finger presses, or a cup pulls at most, newtons; None for the usual.
+        suction: The radius of the rim of a suction cup, metres; None for fingers.
         payload: Kilograms.
         mount: Where the arm's root is on the base: x, y, z in metres and yaw in radians.
         axis: Of the tip, along which our gripper points: x, -x, y, ...; None finds it.
@@ -36,7 +37,8 @@ class Wanted:
     drive: str = "omnidirectional"
     fingers: tuple[str, str] | None = None
     opening: float | None = None
-    force: float = 50.0
+    force: float | None = None
+    suction: float | None = None
     payload: float = math.inf
     mount: tuple[float, float, float, float] | None = None
     axis: str | None = None

@@ -144,6 +144,18 @@ def _joint_lines(robot: Robot, index: int) -> list[str]:
 
 
 def _gripper_lines(robot: Robot) -> list[str]:
+    if robot.suction is not None:
+        return [
+            "gripper:",
+            "  kind: suction",
+            f"  hand: {_quoted(robot.hand)}",
+            f"  mount: {_pose(robot.T_flange_hand)}",
+            f"  tool: {_pose(robot.T_hand_tool)}",
+            f"  radius: {robot.suction.radius!r}",
+            f"  tilt: {robot.suction.tilt!r}",
+            f"  force: {robot.force!r}",
+        ]
+
     lines = [
         "gripper:",
         "  kind: parallel",
@@ -152,7 +164,7 @@ def _gripper_lines(robot: Robot) -> list[str]:
         f"  tool: {_pose(robot.T_hand_tool)}",
         f"  opening: {robot.opening!r}",
         f"  force: {robot.force!r}",
-        f"  speed: {min(finger.velocity for finger in robot.fingers)!r}",
+        f"  speed: {robot.finger_speed!r}",
         "  fingers:",
     ]
     for finger in robot.fingers:

@@ -134,9 +134,9 @@ class Collisions:
             without: Fixed bodies that are left out.
         """
         held = attachment.body if attachment else None
-        standing = [(name, self._place(name, pose)) for name, pose in poses.items() if name != held]
+        around = [(name, self._place(name, pose)) for name, pose in poses.items() if name != held]
         if fixed:
-            standing = [one for one in self._fixed if one[0] not in without] + standing
+            around = [one for one in self._fixed if one[0] not in without] + around
         if opening is None:
             opening = attachment.opening if attachment else self._robot.robot.opening
 
@@ -149,8 +149,8 @@ class Collisions:
             parts.rows,
             parts.poses,
             parts.pairs,
-            np.concatenate([_NO_ROWS, *(placed.rows for _, placed in standing)]),
-            np.concatenate([_NO_POSES, *(placed.poses for _, placed in standing)]),
+            np.concatenate([_NO_ROWS, *(placed.rows for _, placed in around)]),
+            np.concatenate([_NO_POSES, *(placed.poses for _, placed in around)]),
         )
 
         exact = ExactPairs(
@@ -160,7 +160,7 @@ class Collisions:
             self._links,
             self._floor,
             (self._held[attachment.body], attachment.T_tool_body.matrix) if attachment else None,
-            [(name, self._fcl[name], placed.matrix, len(placed.rows)) for name, placed in standing],
+            [(name, self._fcl[name], placed.matrix, len(placed.rows)) for name, placed in around],
         )
 
         return Arrangement(tables, exact)

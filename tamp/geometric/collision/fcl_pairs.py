@@ -30,7 +30,7 @@ class ExactPairs:
         links: FCL objects by link name.
         floor: The floor's.
         held: The attached body's objects and its pose in the tool's frame (4, 4), or None.
-        standing: In the order of the obstacles' rows: a body's name, objects, T_world_body (4, 4),
+        obstacles: In the order of the obstacles' rows: a body's name, objects, T_world_body (4, 4),
             number of parts.
     """
 
@@ -42,14 +42,14 @@ class ExactPairs:
         links: Mapping[str, FclBody],
         floor: FclBody,
         held: tuple[FclBody, Array] | None,
-        standing: list[tuple[str, FclBody, Array, int]],
+        obstacles: list[tuple[str, FclBody, Array, int]],
     ) -> None:
         self._kinematics = kinematics
         self._parts = parts
         self._opening = opening
         self._links = links
         self._held = held
-        self._standing = standing
+        self._obstacles = obstacles
         self._floor = floor
 
     def nearer(self, conf: Float[Array, " conf"], part: int, other: int, padding: float) -> bool:
@@ -83,7 +83,7 @@ class ExactPairs:
         row is.
         """
         first = 0
-        for name, body, matrix, count in self._standing:
+        for name, body, matrix, count in self._obstacles:
             if other < first + count:
                 return name, body, matrix, other - first
             first += count

@@ -68,11 +68,11 @@ class HandCollisions:
             attachment: The body in the hand, or None.
             others: Bodies by name and pose.
         """
-        standing = list(others)
-        if not standing:
+        around = list(others)
+        if not around:
             return None
 
-        owners, lows, highs = self._parts(standing)
+        owners, lows, highs = self._parts(around)
         movers = [
             self._movers(opening),
             *([] if attachment is None else [self._holding(attachment)]),
@@ -101,11 +101,11 @@ class HandCollisions:
 
         return None
 
-    def _parts(self, standing: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
+    def _parts(self, around: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
         owners: list[tuple[str, Pose, int]] = []
         lows: list[Array] = []
         highs: list[Array] = []
-        for name, pose in standing:
+        for name, pose in around:
             if (name, pose) not in self._boxes:
                 boxes = [bounds((part,), pose) for part in self._scene.bodies[name].parts]
                 self._boxes[name, pose] = (

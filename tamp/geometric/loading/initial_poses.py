@@ -170,8 +170,8 @@ class _Placing:
                 )
             return top
 
-        known = sorted({*self.owners, *self.drafts, FLOOR_NAME} - {above[-1]})
-        raise node.error(f"unknown surface or body '{name}'", found=name, choices=known)
+        supports = sorted({*self.owners, *self.drafts, FLOOR_NAME} - {above[-1]})
+        raise node.error(f"unknown surface or body '{name}'", found=name, choices=supports)
 
     def check_level(self, body: Body, node: Node) -> None:
         for place in (*body.surfaces, *body.cavities):

@@ -29,7 +29,7 @@ MOST_TRIANGLES = 1_000_000
 
 Triangles = tuple[Array, NDArray[np.int64]]
 MESH_SUFFIXES = (".obj", ".stl", ".ply", ".dae", ".glb", ".gltf")
-_KNOWN = "OBJ, STL, PLY, COLLADA (.dae), glTF (.glb, .gltf) nor URDF"
+_FORMATS = "OBJ, STL, PLY, COLLADA (.dae), glTF (.glb, .gltf) nor URDF"
 _FACET = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
 _CORNER_0 = re.compile(rb"^f[^\n]*\s0[/\s]", re.MULTILINE)
 _PLY_REMARK = re.compile(rb"^(comment|obj_info)[^\n]*\n", re.MULTILINE)
@@ -57,7 +57,7 @@ def read_triangles(path: Path) -> Triangles:
     name = path.name
     reader = _READERS.get(path.suffix.lower())
     if reader is None:
-        raise InputError(f"'{name}' is neither {_KNOWN}")
+        raise InputError(f"'{name}' is neither {_FORMATS}")
 
     content = read_raw(path, MOST_BYTES)
     # Before minutes go into reading them.
@@ -69,11 +69,13 @@ def read_triangles(path: Path) -> Triangles:
     except InputError:
         raise
     except Exception as error:  # trimesh raises whatever its readers stumble on
-        known = {
+        reasons = {
             ImportError: "it is not text or binary of its format",
             IndexError: "a face names a missing corner",
         }
-        why = next((words for kind, words in known.items() if isinstance(error, kind)), str(error))
+        why = next(
+            (words for kind, words in reasons.items() if isinstance(error, kind)), str(error)
+        )
         why = " ".join(why.split())[:200] or type(error).__name__
         raise InputError(
             f"cannot read the mesh '{name}': {why}", remedy="Export it again as OBJ, STL or PLY"

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from tamp.errors import InputError
+from tamp.geometric.loading.robot_gripper import read_gripper, read_pose
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node
 from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
@@ -28,7 +29,6 @@ _TOP = ("format", "version", "urdf", "made_from", "base", "arm", "gripper", "all
 _BASE = ("drive", "link", "box", "velocity", "acceleration")
 _ARM = ("foot", "mount", "home", "payload", "locked_joint", "joints")
 _JOINT = ("link", "kind", "origin", "range", "velocity", "acceleration", "effort")
-_GRIPPER = ("kind", "hand", "mount", "tool", "opening", "force", "speed", "fingers")
 
 
 def read_robot(folder: Path) -> Robot:
@@ -48,8 +48,7 @@ def read_robot(folder: Path) -> Robot:
 
     base = top["base"].mapping(_BASE, required=_BASE)
     arm = top["arm"].mapping(_ARM, required=("foot", "mount", "home", "joints"))
-    gripper = top["gripper"].mapping(_GRIPPER, required=_GRIPPER)
-    gripper["kind"].text(("parallel",), "kind of gripper")
+    gripper = read_gripper(top["gripper"])
 
     entries = {
         name: node.mapping(_JOINT, required=_JOINT)
@@ -60,11 +59,10 @@ def read_robot(folder: Path) -> Robot:
     joints = tuple(_joint(name, entry) for name, entry in entries.items())
     names = tuple(joint.name for joint in joints)
     locked = arm["locked_joint"].text(names, "joint") if "locked_joint" in arm else None
-    fingers = _fingers(gripper)
 
-    roles = {node.text(): node for node in (base["link"], arm["foot"], gripper["hand"])}
+    roles = {node.text(): node for node in (base["link"], arm["foot"], gripper.node)}
     chain = [base["link"].text(), arm["foot"].text(), *(joint.child for joint in joints)]
-    chain += [gripper["hand"].text(), *(finger.child for finger in fingers)]
+    chain += [gripper.hand, *(finger.child for finger in gripper.fingers)]
     if len(roles) != 3 or len(set(chain)) != len(chain):
         raise root.error("two parts of the robot have a link of one name")
 
@@ -73,26 +71,27 @@ def read_robot(folder: Path) -> Robot:
         links=_links(folder, chain, _box(base["box"])),
         base=chain[0],
         foot=chain[1],
-        hand=gripper["hand"].text(),
-        T_base_arm=_pose(arm["mount"]),
+        hand=gripper.hand,
+        T_base_arm=read_pose(arm["mount"]),
         joints=joints,
-        T_flange_hand=_pose(gripper["mount"]),
-        T_hand_tool=_pose(gripper["tool"]),
-        fingers=fingers,
+        T_flange_hand=gripper.T_flange_hand,
+        T_hand_tool=gripper.T_hand_tool,
+        fingers=gripper.fingers,
         lower=tuple(_lower(joint) for joint in joints),
         upper=tuple(_upper(joint) for joint in joints),
         velocity=base["velocity"].numbers(3, positive=True) + _each(entries, "velocity"),
         acceleration=base["acceleration"].numbers(3, positive=True)
         + _each(entries, "acceleration"),
         home=arm["home"].numbers(len(joints)),
-        opening=gripper["opening"].number(positive=True),
+        opening=gripper.opening,
         allowed=_allowed(top["allowed"], chain) if "allowed" in top else frozenset(),
         urdf=_urdf(top["urdf"], folder),
         folder=folder,
         drive=base["drive"].text(DRIVES, "drive"),
         locked=None if locked is None else names.index(locked),
         effort=_each(entries, "effort"),
-        force=gripper["force"].number(positive=True),
+        force=gripper.force,
+        suction=gripper.suction,
         payload=arm["payload"].number(positive=True) if "payload" in arm else math.inf,
     )
     _check_home(robot, arm["home"])
@@ -124,8 +123,8 @@ def _joint(name: str, entry: Mapping[str, Node]) -> Joint:
     if kind != "continuous" and not high - low > least:
         raise entry["range"].error(f"the lower limit {low:g} is not below the upper {high:g}")
     return Joint(
-        name, kind, "", entry["link"].text(), _pose(entry["origin"]), (0.0, 0.0, 1.0), low, high,
-        entry["velocity"].number(positive=True),
+        name, kind, "", entry["link"].text(), read_pose(entry["origin"]), (0.0, 0.0, 1.0), low,
+        high, entry["velocity"].number(positive=True),
     )  # fmt: skip
 
 
@@ -143,31 +142,6 @@ def _upper(joint: Joint) -> float:
 
 def _each(entries: Mapping[str, Mapping[str, Node]], key: str) -> tuple[float, ...]:
     return tuple(entry[key].number(positive=True) for entry in entries.values())
-
-
-def _fingers(gripper: Mapping[str, Node]) -> tuple[Joint, Joint]:
-    entries = gripper["fingers"].mapping()
-    if len(entries) != 2:
-        raise gripper["fingers"].error(f"a parallel gripper has two fingers, not {len(entries)}")
-    speed, opening = gripper["speed"].number(positive=True), gripper["opening"].number()
-    found: list[Joint] = []
-    for name, node in entries.items():
-        entry = node.mapping(("link", "origin", "axis"), required=("link", "origin", "axis"))
-        x, y, z = entry["axis"].numbers(3)
-        hand, link, origin = gripper["hand"].text(), entry["link"].text(), _pose(entry["origin"])
-        found.append(
-            Joint(name, "prismatic", hand, link, origin, (x, y, z), 0.0, opening / 2, speed)
-        )
-    return found[0], found[1]
-
-
-def _pose(node: Node) -> Pose:
-    entries = node.mapping(("xyz", "quaternion"), required=("xyz", "quaternion"))
-    x, y, z = entries["xyz"].numbers(3)
-    a, b, c, d = entries["quaternion"].numbers(4)
-    if abs(math.hypot(a, b, c, d) - 1.0) > 1e-6:
-        raise entries["quaternion"].error("its norm is not 1")
-    return Pose((x, y, z), (a, b, c, d))
 
 
 def _box(node: Node) -> Part:

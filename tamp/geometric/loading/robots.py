@@ -15,7 +15,7 @@ from tamp.geometric.robot.robot import Robot
 ASSETS = Path(tamp.geometric.robot.__file__).parent / "assets"
 """The folder of the shipped robots' folders."""
 
-SHIPPED = ("panda_mobile", "panda_fixed", "ur5", "xarm7")
+SHIPPED = ("panda_mobile", "panda_fixed", "ur5", "ur5_suction", "xarm7", "pr2")
 """Their names."""
 
 

@@ -218,7 +218,7 @@ def _largest(
     level: list[_Face], height: float, boxes: list[tuple[Array, Array]]
 ) -> _Rectangle | None:
     """Find the largest free rectangle in the union of level faces, along one face's sides."""
-    standing = [
+    obstacles = [
         (low, high)
         for low, high in boxes
         if high[2] > height + _SAME_HEIGHT and low[2] < height + _HEADROOM_M
@@ -239,7 +239,7 @@ def _largest(
         rectangles = np.array([inscribed(face.corners @ into.T) for face in level])
         areas = (rectangles[:, 1] - rectangles[:, 0]) * (rectangles[:, 3] - rectangles[:, 2])
         rectangles = rectangles[np.argsort(-areas, kind="stable")[:_MOST_FACES]]
-        blocked = np.array([_flat_box(low, high, into) for low, high in standing]).reshape(-1, 4)
+        blocked = np.array([_flat_box(low, high, into) for low, high in obstacles]).reshape(-1, 4)
         (left, _, near, _), (_, right, _, far) = rectangles.min(axis=0), rectangles.max(axis=0)
 
         over = (

@@ -15,7 +15,7 @@ from tamp.geometric.scene.scene import Box, Cylinder, Sphere
 
 Scale = tuple[float, float, float]
 Colour = tuple[float, float, float, float]
-KNOWN = ("box", "cylinder", "sphere", "capsule", "mesh")
+SHAPE_TAGS = ("box", "cylinder", "sphere", "capsule", "mesh")
 
 
 MOST_ELEMENTS = 2000
@@ -160,7 +160,8 @@ def _element(
         )
 
     raise UnknownGeometry(
-        f"'{path.name}' has the geometry <{shape.tag[:40]}>, which is none of {', '.join(KNOWN)}"
+        f"'{path.name}' has the geometry <{shape.tag[:40]}>, "
+        f"which is none of {', '.join(SHAPE_TAGS)}"
     )
 
 

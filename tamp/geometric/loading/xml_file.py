@@ -16,7 +16,7 @@ MOST_BYTES = 20_000_000
 
 _DECLARED = re.compile(rb"""^<\?xml[^>]*?encoding\s*=\s*["']([A-Za-z0-9._-]+)["'][^>]*\?>""")
 # Of the others, some are no text, and some take quadratic time.
-_KNOWN = re.compile(
+_TEXT_ENCODINGS = re.compile(
     r"(utf|ucs|us-ascii|ascii|iso[-_]?8859|latin|windows-?125|cp\d|gb|big5|shift|sjis|euc|koi8"
     r"|mac)",
     re.IGNORECASE,
@@ -72,7 +72,7 @@ def _text(content: bytes) -> str:
             break
     else:
         declared = _DECLARED.match(content.lstrip())
-        if declared and _KNOWN.match(declared[1].decode()):
+        if declared and _TEXT_ENCODINGS.match(declared[1].decode()):
             encoding = declared[1].decode()
     try:
         text = content.decode(encoding)

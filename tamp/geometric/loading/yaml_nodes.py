@@ -98,21 +98,21 @@ class Node:
         return entries
 
     def _entries(
-        self, node: yaml.MappingNode, known: dict[int, dict[str, Node] | None], depth: int
+        self, node: yaml.MappingNode, composed: dict[int, dict[str, Node] | None], depth: int
     ) -> dict[str, Node]:
-        """Return a mapping's entries, those merged too; `known`: merged before, by identity."""
-        if id(node) in known:
-            found = known[id(node)]
+        """Return a mapping's entries, those merged too; `composed`: merged before, by identity."""
+        if id(node) in composed:
+            found = composed[id(node)]
             if found is None:
                 raise self.error("'<<' merges a mapping into itself")
             return found
 
-        if depth > MAX_DEPTH or len(known) > MAX_MERGES:
+        if depth > MAX_DEPTH or len(composed) > MAX_MERGES:
             raise self.error(
                 f"'<<' merges more than {MAX_MERGES} mappings, or more than {MAX_DEPTH} deep"
             )
 
-        known[id(node)] = None
+        composed[id(node)] = None
         entries: dict[str, Node] = {}
         merged: list[yaml.Node] = []
         for key, value in node.value:
@@ -134,10 +134,10 @@ class Node:
         for base in merged:
             if not isinstance(base, yaml.MappingNode):
                 raise self.error("'<<' merges mappings only")
-            for key, child in self._entries(base, known, depth + 1).items():
+            for key, child in self._entries(base, composed, depth + 1).items():
                 entries.setdefault(key, child)
 
-        known[id(node)] = entries
+        composed[id(node)] = entries
         return entries
 
     def items(self, count: int | None = None) -> list[Node]:

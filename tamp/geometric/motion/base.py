@@ -257,14 +257,19 @@ def _drive(
 
         if found is None:
             return None
-        rest = [*found[1:-1], goal]
+        remaining = [*found[1:-1], goal]
         vertices = [start]
-        while rest:  # from each vertex jump as far ahead as a free curve leads
+        while remaining:  # from each vertex jump as far ahead as a free curve leads
             jump = next(
-                (j for j in range(len(rest) - 1, 0, -1) if curve_free(vertices[-1], rest[j])), 0
+                (
+                    j
+                    for j in range(len(remaining) - 1, 0, -1)
+                    if curve_free(vertices[-1], remaining[j])
+                ),
+                0,
             )
-            vertices.append(rest[jump])
-            rest = rest[jump + 1 :]
+            vertices.append(remaining[jump])
+            remaining = remaining[jump + 1 :]
 
     pieces = [sampled(a, b) for a, b in pairwise(vertices)]
     return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW_COLUMNS)

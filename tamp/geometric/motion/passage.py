@@ -87,7 +87,7 @@ class Passage:
         self.radius, self._heights = (0.0, (0.0, 0.0)) if box is None else box
         x, y = scene.room.x, scene.room.y
         self.cell = max(MIN_CELL_M, math.sqrt((x[1] - x[0]) * (y[1] - y[0]) / MAX_CELLS))
-        self.known = box is not None and self.cell <= MAX_CELL_M
+        self.is_mapped = box is not None and self.cell <= MAX_CELL_M
         self._start = np.array(scene.robot.base[:2])
         self._open: list[tuple[float, float]] = []
 
@@ -203,7 +203,7 @@ class Passage:
         """Return the gap that keeps the base from within `reach` metres of a box (2,), (2,); None
         unless that is proven.
         """
-        if not self.known or self.open_towards((low + high) / 2, reach):
+        if not self.is_mapped or self.open_towards((low + high) / 2, reach):
             return None
         xs, ys, _ = self._floor
         dx = np.maximum(np.maximum(low[0] - xs, xs - high[0]), 0.0)
@@ -214,16 +214,14 @@ class Passage:
             return None
         _, _, free = self._floor
         # Behind a door there is room to stand; beside a wall there is no door.
-        standing = near & (free >= self.radius)
-        return self._gap(
-            int(np.argmax(np.where(standing if standing.any() else near, widest, -1.0)))
-        )
+        roomy = near & (free >= self.radius)
+        return self._gap(int(np.argmax(np.where(roomy if roomy.any() else near, widest, -1.0))))
 
     def narrow(self, goal: Float[Array, " 2"]) -> Gap | None:
         """Find the narrowest place on the widest way to a base position (2,), where the base hardly
         fits through it.
         """
-        if not self.known:
+        if not self.is_mapped:
             return None
         xs, ys, _ = self._floor
         target = int(np.argmin(np.abs(xs - goal[0]))) * len(ys) + int(

@@ -65,8 +65,8 @@ def time_path(
     if len(path) == 1:
         return Timed(np.zeros(1), path)
     passed = corners(path, acceleration, edge_free)
-    rests = [k for k, corner in enumerate(passed) if not corner.blend_length]
-    return _joined([_piece(passed[i : j + 1], velocity, acceleration) for i, j in pairwise(rests)])
+    stops = [k for k, corner in enumerate(passed) if not corner.blend_length]
+    return _joined([_piece(passed[i : j + 1], velocity, acceleration) for i, j in pairwise(stops)])
 
 
 def _piece(passed: list[Corner], velocity: Array, acceleration: Array) -> Timed:
@@ -100,8 +100,8 @@ def _straight_profile(
 
 def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) -> Timed:
     """Time one edge from rest to rest."""
-    push, ramp, rest = _straight_profile(start, end, velocity, acceleration)
-    top, duration = 1.0 / rest, rest + ramp
+    push, ramp, inverse_top = _straight_profile(start, end, velocity, acceleration)
+    top, duration = 1.0 / inverse_top, inverse_top + ramp
     times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / TICK))) + 1)
     left = duration - times
     done = np.where(times < ramp, 0.5 * push * times**2, top * (times - 0.5 * ramp))

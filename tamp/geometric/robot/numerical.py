@@ -93,10 +93,10 @@ def _halton(index: int, count: int) -> list[float]:
     """Return the point of that index of Halton's sequence in [0, 1)^count."""
     point: list[float] = []
     for joint in range(count):
-        base, value, scale, rest = HALTON_BASES[joint % len(HALTON_BASES)], 0.0, 1.0, index
-        while rest:
+        base, value, scale, remaining = HALTON_BASES[joint % len(HALTON_BASES)], 0.0, 1.0, index
+        while remaining:
             scale /= base
-            value += scale * (rest % base)
-            rest //= base
+            value += scale * (remaining % base)
+            remaining //= base
         point.append(value)
     return point

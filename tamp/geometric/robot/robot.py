@@ -26,8 +26,21 @@ class Link:
 
 
 @dataclass(frozen=True)
+class Suction:
+    """A suction cup, its rim about the tool's origin and across the tool's z.
+
+    Attributes:
+        radius: Of the rim, metres.
+        tilt: By how much what it seals on may lean against its axis, radians.
+    """
+
+    radius: float
+    tilt: float
+
+
+@dataclass(frozen=True)
 class Robot:
-    """A base that carries an arm with a parallel gripper.
+    """A base that carries an arm with a parallel gripper, or with a suction cup.
 
     A configuration is [base x, base y, base yaw, q1..qn] in metres and radians, or metres for a
     prismatic joint.
@@ -35,21 +48,23 @@ class Robot:
     Attributes:
         links: All of them: base, foot, those of the arm's joints, hand, fingers.
         base, foot, hand: Names of links: what stands on the floor, what the arm begins with, and
-            what carries the fingers. The arm's and the fingers' own are their joints' children.
+            what carries the fingers, or the cup. The arm's and the fingers' own are their joints'
+            children.
         T_base_arm: The arm's foot in the base's frame, which is on the floor under the base's
             centre.
         joints: The arm's, from the foot on; each turns about its own z, or slides along it.
         T_flange_hand: The hand in the last arm link's frame.
         T_hand_tool: The tool in the hand's frame: between the pads, z along the fingers, y the
-            closing direction.
+            closing direction. Of a cup: in the middle of its rim, z out of it.
         fingers: The left and the right finger's prismatic joint; at opening w each stands at w / 2.
+            A suction gripper has none.
         lower, upper: The range of the arm's joints in plans: the maker's, LIMIT_MARGIN_RAD less on
             both sides.
         velocity, acceleration: Limits of base x, base y, base yaw and the joints, per second
             (squared).
         home: The arm's compact carrying configuration, in which the base drives.
-        opening: The largest opening of the fingers, metres.
-        force: With which each finger presses, newtons.
+        opening: The largest opening of the fingers, metres; 0 of a suction gripper.
+        force: With which each finger presses, or the most that a cup pulls with, newtons.
         payload: The most that the arm lifts, kilograms.
         allowed: Pairs of links, each sorted, that are never checked for collision.
         urdf: The arm's and the hand's description.
@@ -58,6 +73,7 @@ class Robot:
         locked: Index of the joint that, fixed, leaves an arm that closed-form inverse kinematics
             knows; None where there is none.
         effort: The most that each of the arm's joints exerts, newton metres or newtons.
+        suction: The cup of a suction gripper; None where fingers grasp.
     """
 
     name: str
@@ -69,7 +85,7 @@ class Robot:
     joints: tuple[Joint, ...]
     T_flange_hand: Pose
     T_hand_tool: Pose
-    fingers: tuple[Joint, Joint]
+    fingers: tuple[Joint, ...]
     lower: tuple[float, ...]
     upper: tuple[float, ...]
     velocity: tuple[float, ...]
@@ -84,6 +100,7 @@ class Robot:
     effort: tuple[float, ...] = field(default=())
     force: float = 50.0
     payload: float = math.inf
+    suction: Suction | None = None
 
     def link(self, name: str) -> Link:
         """Return the link of that name.
@@ -97,6 +114,11 @@ class Robot:
     def finger_links(self) -> tuple[Link, ...]:
         """Return the links of the fingers, in the order of their joints."""
         return tuple(self.link(finger.child) for finger in self.fingers)
+
+    @property
+    def finger_speed(self) -> float:
+        """Return the speed of each finger, metres a second; 0 where there are none."""
+        return min((finger.velocity for finger in self.fingers), default=0.0)
 
     @property
     def grippers(self) -> frozenset[str]:

@@ -51,12 +51,12 @@ class SamplerSpec:
         return f"{self.name}:{'alone' if self.alone else 'mixed'}"
 
 
-HAND_MADE = frozenset(name for known in SAMPLERS.values() for name in known)
+HAND_MADE = frozenset(name for registry in SAMPLERS.values() for name in registry)
 """The samplers that are alone unless it is said that they are mixed."""
 
 
 def parse_choice(
-    relation: str, text: str, known: Registry, folder: Path | None = None
+    relation: str, text: str, registry: Registry, folder: Path | None = None
 ) -> SamplerSpec:
     """Read NAME, NAME:mixed or NAME:alone; a NAME may be a file, of which the choice has the whole
     path.
@@ -64,7 +64,7 @@ def parse_choice(
     Args:
         relation: Of any name where a file serves it.
         text: What is to be read.
-        known: All samplers.
+        registry: All samplers.
         folder: Where a relative path starts; by default where the program runs.
 
     Raises:
@@ -75,24 +75,24 @@ def parse_choice(
         if text.endswith(tuple(f":{mode}" for mode in SAMPLER_MODES))
         else (text, "", "")
     )
-    if Path(name).suffix in known.get(ANY_RELATION, {}):
+    if Path(name).suffix in registry.get(ANY_RELATION, {}):
         return SamplerSpec(os.path.abspath((folder or Path()) / name), alone=mode == "alone")
 
     name, colon, mode = text.partition(":")
-    if relation not in known or relation == ANY_RELATION:
-        choices = [other for other in known if other != ANY_RELATION]
+    if relation not in registry or relation == ANY_RELATION:
+        choices = [other for other in registry if other != ANY_RELATION]
         remedy = (
-            f"Of one's own: {relation}=FILE{next(iter(known[ANY_RELATION]))}"
-            if known.get(ANY_RELATION)
-            else ""
+            f"Of one's own: {relation}=FILE{next(iter(registry[ANY_RELATION]))}"
+            if registry.get(ANY_RELATION)
+            else "Learned ones are known with registry=grounding.registry.GROUNDINGS"
         )
         raise InputError(
             f"unknown relation '{relation}'", found=relation, choices=choices, remedy=remedy
         )
 
-    if name not in known[relation]:
+    if name not in registry[relation]:
         raise InputError(
-            f"unknown sampler '{name}' for '{relation}'", found=name, choices=known[relation]
+            f"unknown sampler '{name}' for '{relation}'", found=name, choices=registry[relation]
         )
 
     if colon and mode not in SAMPLER_MODES:
@@ -115,11 +115,11 @@ def sampler_files(samplers: Iterable[str]) -> list[Path]:
     return [file for name in names if name.suffix for file in (name, name.with_suffix(".json"))]
 
 
-def maker(relation: str, choice: SamplerSpec, known: Registry) -> Callable[[], Grounding]:
+def maker(relation: str, choice: SamplerSpec, registry: Registry) -> Callable[[], Grounding]:
     """Return what makes the chosen sampler; it may raise InputError."""
-    if choice.name in known.get(relation, {}):
-        return known[relation][choice.name]
-    return partial(known[ANY_RELATION][Path(choice.name).suffix], relation, Path(choice.name))
+    if choice.name in registry.get(relation, {}):
+        return registry[relation][choice.name]
+    return partial(registry[ANY_RELATION][Path(choice.name).suffix], relation, Path(choice.name))
 
 
 def make_mixture(relation: str, choice: SamplerSpec, generator: Generator) -> Mixture:

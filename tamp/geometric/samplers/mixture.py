@@ -154,10 +154,10 @@ class SamplerStatistics:
         account.out = reason
 
 
-def sidelined(relation: str, account: SamplerRecord, rest: Sequence[str]) -> str:
+def sidelined(relation: str, account: SamplerRecord, others: Sequence[str]) -> str:
     """Return the sentence for the user."""
     out = f"sampler '{account.name}' for '{relation}' is sidelined: {account.out}"
-    return f"{out}; {', '.join(rest)} goes on without it"
+    return f"{out}; {', '.join(others)} goes on without it"
 
 
 def accounts(memory: Mapping[str, object]) -> dict[str, tuple[SamplerRecord, ...]]:

@@ -20,17 +20,17 @@ def once_a_shape(function: Callable[[Body], T]) -> Callable[[Body], T]:
 
     The function sees a body of these alone; whoever calls it must not change what it gives.
     """
-    known: OrderedDict[Hashable, T] = OrderedDict()
+    cached: OrderedDict[Hashable, T] = OrderedDict()
 
     def remembered(body: Body) -> T:
         key = tuple(_content(part) for part in body.parts), body.center_of_mass
-        if key not in known:
+        if key not in cached:
             shape = Body("", body.parts, Pose(), movable=True, center_of_mass=body.center_of_mass)
-            known[key] = function(shape)
-            if len(known) > MOST:
-                known.popitem(last=False)
-        known.move_to_end(key)
-        return known[key]
+            cached[key] = function(shape)
+            if len(cached) > MOST:
+                cached.popitem(last=False)
+        cached.move_to_end(key)
+        return cached[key]
 
     return remembered
 

@@ -80,17 +80,17 @@ def approach_hits(
     """Return the first of other bodies that the hand hits on its way to the grasp, or on its way
     back with the body.
     """
-    standing = list(others)
+    around = list(others)
     T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
     back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
     up = context.touching.way_out(grasp.body, pose, LIFT_DISTANCE_M)
     out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in APPROACH_SHARES)]
     hand, touching = context.hand, context.touching
-    hit = open_hand_hits(context, T_world_tool, standing)
+    hit = open_hand_hits(context, T_world_tool, around)
     if hit is not None:
         return hit
 
-    leaving = {name for name, other in standing if touching.together(grasp.body, pose, name, other)}
+    leaving = {name for name, other in around if touching.together(grasp.body, pose, name, other)}
     if leaving:  # the hand must not touch them, the body in it only while it leaves them
         steps = [
             _moved(T_world_tool, share * up) for share in np.linspace(0.0, 1.0, DEPARTURE_LOOKS)
@@ -103,10 +103,10 @@ def approach_hits(
         for name in leaving:
             if not touching.separates(grasp.body, bodies, name):
                 return name
-        hit = hand.hits(out, grasp.opening, None, [one for one in standing if one[0] in leaving])
-        standing = [one for one in standing if one[0] not in leaving]
+        hit = hand.hits(out, grasp.opening, None, [one for one in around if one[0] in leaving])
+        around = [one for one in around if one[0] not in leaving]
 
-    return hit or hand.hits(out, grasp.opening, context.attachment(grasp), standing)
+    return hit or hand.hits(out, grasp.opening, context.attachment(grasp), around)
 
 
 def open_hand_hits(

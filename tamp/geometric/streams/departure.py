@@ -37,7 +37,7 @@ def lift_hits(
         padding: Metres that robot and body keep to the others.
     """
     held, body = context.attachment(grasp), grasp.body
-    standing = (
+    around = (
         {name: context.scene.bodies[name].pose for name in context.scene.fixed}
         if others is None
         else others
@@ -45,7 +45,7 @@ def lift_hits(
 
     leaving = {
         name: other
-        for name, other in standing.items()
+        for name, other in around.items()
         if context.touching.together(body, pose, name, other)
     }
 
@@ -58,12 +58,12 @@ def lift_hits(
         )
         return among.path_hits(lift, padding=padding)
 
-    rest = (
+    staying = (
         {}
         if others is None
         else {name: other for name, other in others.items() if name not in leaving}
     )
-    among = collisions.arrangement(rest, held, fixed=others is None, without=leaving)
+    among = collisions.arrangement(staying, held, fixed=others is None, without=leaving)
     hand = collisions.arrangement(leaving, None, opening=grasp.opening, fixed=False)
     hit = among.path_hits(lift, padding=padding) or hand.path_hits(lift, padding=padding)
     if hit is not None:

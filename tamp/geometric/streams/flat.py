@@ -38,6 +38,8 @@ def too_flat(context: Context, body: str, pose: Pose) -> Rejection | None:
     of that, and what is around, lies on one convex part of a fixed body.
     """
     shape = context.scene.bodies[body]
+    if context.robot.suction is not None:  # it needs no finger beneath
+        return None
     if len(shape.parts) != 1 or _is_narrow(shape.parts[0].shape, context.robot.opening):
         return None
 

@@ -164,14 +164,14 @@ def _canonical(
     axes = closing_axes(body, solid, up, fit.widest, rng)
     upright = straight(axes, up)
     level = [pair for pair in upright if abs(pair[0] @ up) < LEVEL_CLOSING]
-    rest = [pair for pair in upright if abs(pair[0] @ up) >= LEVEL_CLOSING]
+    horizontal = [pair for pair in upright if abs(pair[0] @ up) >= LEVEL_CLOSING]
     sides = [pair for pair in level if abs(pair[1] @ up) < MAX_UPWARD_PART]
     tall = solid.extent(up)[1] - solid.centre @ up > 2 * HALF_HAND
     for directions, high in (
         (level, False),
         (sides if tall else [], True),
         (slanted(axes, up), False),
-        (rest, False),
+        (horizontal, False),
     ):
         order = [directions[index] for index in rng.permutation(len(directions))]
         tools = (_at_middle(solid, closing, approach, up, high) for closing, approach in order)

@@ -46,7 +46,7 @@ def load_of(call: Call, body: str | None) -> Load:
     )
 
 
-def standing(call: Call) -> dict[str, Pose]:
+def body_poses(call: Call) -> dict[str, Pose]:
     """Return where bodies stand by the fluents, those as well that ride on a body that stands."""
     poses = {values[0]: values[1] for name, *values in call.fluents if name == "at-pose"}
     carriers = {values[2] for name, *values in call.fluents if name == "riding"}
@@ -95,7 +95,7 @@ def plan_loaded_pick(
     """Plan a pick of a body with what stands on it: level, from home to it and back."""
     body, whole = grasp.body, context.loaded(grasp.body, load)
     carried_along = {body, *(name for name, _ in load)}
-    others = {name: other for name, other in standing(call).items() if name not in carried_along}
+    others = {name: other for name, other in body_poses(call).items() if name not in carried_along}
     refused = _refused(context, whole, pose, grasp, base, reach, load, others, call)
     if refused is not None:
         yield refused

@@ -16,7 +16,7 @@ from tamp.geometric.motion.arm import plan_arm
 from tamp.geometric.motion.base import plan_base
 from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.streams.loads import load_of, plan_loaded_pick, standing
+from tamp.geometric.streams.loads import body_poses, load_of, plan_loaded_pick
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
 
@@ -51,7 +51,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
     """Plan a drive of the base, the arm at home, perhaps with a body in hand."""
     start = next(value for name, *values in call.fluents for value in values if name == "at-base")
     held = next((values[1] for name, *values in call.fluents if name == "holding"), None)
-    poses = standing(call)
+    poses = body_poses(call)
     if held is not None:
         context = context.loaded(held.body, load_of(call, held.body))
     opening = context.robot.opening if held is None else held.opening
@@ -129,7 +129,7 @@ def _transits(
 
     One path usually serves both, so the loaded one is planned first; it is the harder.
     """
-    others = {name: other for name, other in standing(call).items() if name != body}
+    others = {name: other for name, other in body_poses(call).items() if name != body}
     stand = np.array(base.array)
     out = reach.lift[-1]
 

@@ -175,9 +175,9 @@ def footing(context: Context, body: str, pose: Pose) -> tuple[Float[Array, "n 2"
     """Return the convex polygons (n, 2), metres, over all of which whatever stands on a body at a
     pose must have its centre of mass: its base, the places and bases below it.
     """
-    known = context.footings.get((body, pose))
-    if known is not None:
-        return known
+    cached = context.footings.get((body, pose))
+    if cached is not None:
+        return cached
 
     polygons = [base(context, body, pose)]
     scene, start = context.scene, context.scene.bodies[body]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from tamp.geometric.streams.approach import test_approach, test_approach_clear
@@ -16,24 +17,34 @@ from tamp.geometric.streams.movable_supports import (
 )
 from tamp.geometric.streams.reach import test_reachable
 from tamp.geometric.streams.sampling import sample_grasp, sample_inside, sample_on
+from tamp.stream import StreamKind
 
-STREAMS: Mapping[str, Callable[..., Any]] = {
-    "sample-grasp": sample_grasp,
-    "sample-on": sample_on,
-    "sample-inside": sample_inside,
-    "sample-on-movable": sample_on_movable,
-    "sample-inside-movable": sample_inside_movable,
-    "shift-on": shift,
-    "shift-inside": shift,
-    "inverse-kinematics": inverse_kinematics,
-    "inverse-kinematics-here": inverse_kinematics_here,
-    "test-reachable": test_reachable,
-    "test-pose-clear": test_pose_clear,
-    "test-approach": test_approach,
-    "test-approach-clear": test_approach_clear,
-    "test-reach-clear": test_reach_clear,
-    "plan-base-motion": plan_base_motion,
-    "plan-pick": plan_pick,
-    "plan-place": plan_place,
+
+@dataclass(frozen=True)
+class ShippedStream:
+    """A function f(context, *inputs, call), and the kind of stream that it serves."""
+
+    function: Callable[..., Any]
+    kind: StreamKind
+
+
+STREAMS: Mapping[str, ShippedStream] = {
+    "sample-grasp": ShippedStream(sample_grasp, StreamKind.GRASPS),
+    "sample-on": ShippedStream(sample_on, StreamKind.PLACEMENTS),
+    "sample-inside": ShippedStream(sample_inside, StreamKind.PLACEMENTS),
+    "sample-on-movable": ShippedStream(sample_on_movable, StreamKind.PLACEMENTS),
+    "sample-inside-movable": ShippedStream(sample_inside_movable, StreamKind.PLACEMENTS),
+    "shift-on": ShippedStream(shift, StreamKind.OTHER),
+    "shift-inside": ShippedStream(shift, StreamKind.OTHER),
+    "inverse-kinematics": ShippedStream(inverse_kinematics, StreamKind.IK),
+    "inverse-kinematics-here": ShippedStream(inverse_kinematics_here, StreamKind.IK),
+    "test-reachable": ShippedStream(test_reachable, StreamKind.TESTS),
+    "test-pose-clear": ShippedStream(test_pose_clear, StreamKind.TESTS),
+    "test-approach": ShippedStream(test_approach, StreamKind.TESTS),
+    "test-approach-clear": ShippedStream(test_approach_clear, StreamKind.TESTS),
+    "test-reach-clear": ShippedStream(test_reach_clear, StreamKind.TESTS),
+    "plan-base-motion": ShippedStream(plan_base_motion, StreamKind.MOTION),
+    "plan-pick": ShippedStream(plan_pick, StreamKind.MOTION),
+    "plan-place": ShippedStream(plan_place, StreamKind.MOTION),
 }
-"""Stream name to f(context, *inputs, call)."""
+"""By the stream's name."""

@@ -15,6 +15,8 @@ from tamp.geometric.streams.firmness import GRAVITY_M_S2, PAD_FRICTION
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.streams.proposal_stream import certified_poses
 from tamp.geometric.streams.refusals import covered, no_grasp, no_room
+from tamp.geometric.streams.suction import sample_suction_grasps
+from tamp.geometric.streams.suction_refusals import no_seal, too_heavy_to_suck
 from tamp.geometric.values import Grasp
 from tamp.stream import Call, Rejection, RejectionKind
 
@@ -41,14 +43,17 @@ def sample_grasp(context: Context, body: str, call: Call) -> Iterator[Grasp | Re
     def free(T_body_tool: Array) -> bool:
         return open_hand_hits(context, shape.pose.matrix @ T_body_tool, fixed) is None
 
-    ups = (context.carrying_up,)
-    for grasp in sample_grasps(shape, context.robot, call.rng, ups, refused, free):
+    ups, cup = (context.carrying_up,), context.robot.suction
+    drawn = sample_grasps if cup is None else sample_suction_grasps
+    for grasp in drawn(shape, context.robot, call.rng, ups, refused, free):
         found = True
         yield grasp
     if found:
         yield Rejection("no further grasp was found", given_up=True, kind=RejectionKind.NO_GRASP)
+    elif cup is not None:
+        yield no_seal(shape, cup)
     else:
-        yield no_grasp(context.scene.bodies[body], context.robot.opening)
+        yield no_grasp(shape, context.robot.opening)
 
 
 def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
@@ -60,6 +65,8 @@ def _too_heavy(body: Body, robot: Robot) -> Rejection | None:
             f"{body.name} weighs {body.mass:g} kg, the robot lifts {robot.payload:g} kg",
             kind=RejectionKind.TOO_HEAVY,
         )
+    if robot.suction is not None:
+        return too_heavy_to_suck(body, robot)
     holds = 2 * body.friction * PAD_FRICTION * robot.force / GRAVITY_M_S2
     if body.mass > holds:
         what = (

@@ -67,9 +67,9 @@ def changes(problem: Problem) -> Iterator[Change]:
     for name, body in scene.bodies.items():
         idle = name not in wanted and not _on(scene, body)
         if idle:
-            rest = {other: kept for other, kept in scene.bodies.items() if other != name}
+            others = {other: kept for other, kept in scene.bodies.items() if other != name}
             yield Change(
-                f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=rest)
+                f"without {name}", (name,), 1 if body.movable else 2, replace(scene, bodies=others)
             )
 
         if body.movable and (name in wanted or not idle):
@@ -99,9 +99,9 @@ def changes(problem: Problem) -> Iterator[Change]:
     if isinstance(goal, And) and len(goal.parts) > 1:
         for index, part in enumerate(goal.parts):
             if isinstance(part, Atom):
-                rest = And((*goal.parts[:index], *goal.parts[index + 1 :]))
+                others = And((*goal.parts[:index], *goal.parts[index + 1 :]))
                 text = f"without the goal ({' '.join((part.predicate, *part.terms))})"
-                yield Change(text, part.terms, 4, goal=rest)
+                yield Change(text, part.terms, 4, goal=others)
 
 
 def _brought(scene: Scene, body: Body) -> Iterator[Change]:

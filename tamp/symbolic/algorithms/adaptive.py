@@ -64,8 +64,9 @@ LONG_SEARCH = 150
 to be given another try in each round."""
 
 DRAWS_FOR_A_STATE = 4
-"""Draws that a skeleton gets at least for each state of a long search, which so takes no more than
-about a quarter of the time; `MOST_SHARES` times as many are the most in one of its rounds."""
+"""Draws that a skeleton gets at least for each state of a long search, and one at least for each of
+its calls: the search, and putting the skeleton together, so take no more than about a quarter of
+the time. `MOST_SHARES` times as many are the most in one of its rounds."""
 
 MOST_SHARES = 10
 
@@ -119,7 +120,10 @@ def plan_adaptively(run: Run) -> Result:
             if found is None:
                 result = _without_plan(run)
             else:
-                skeleton = run.latest = skeleton_of(run, found)
+                skeleton = skeleton_of(run, found)
+                if run.latest is not None and found.expanded >= LONG_SEARCH:
+                    skeleton.recall(run.latest)
+                run.latest = skeleton
                 values = bind_for_its_worth(run, skeleton, found.expanded)
                 if values is not None:
                     return solved_result(run, skeleton, values)
@@ -141,7 +145,9 @@ def bind_for_its_worth(run: Run, skeleton: Skeleton, expanded: int) -> dict[int,
         skeleton: What to bind.
         expanded: The states that its search took.
     """
-    share = DRAWS_FOR_A_STATE * expanded if expanded >= LONG_SEARCH else 0
+    share = 0
+    if expanded >= LONG_SEARCH:
+        share = max(DRAWS_FOR_A_STATE * expanded, len(skeleton.nodes))
     worth = run.binder.draws + share
     while True:
         before, rounds = run.binder.draws, skeleton.rounds

@@ -9,7 +9,7 @@ from functools import partial
 from numbers import Real
 from typing import Any
 
-from tamp.stream import Call, Rejection, Wild
+from tamp.stream import Call, Rejection, StreamKind, Wild
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.pddl.structs import Atom, Fact, Stream
 from tamp.system.deadline import Deadline, OutOfTime
@@ -18,21 +18,21 @@ StreamFunction = Callable[..., Any]
 """f(*input values, call: Call). A generator yields one value (or a tuple, one per output) or a
 Rejection a try, and ends when nothing more is to come; a test returns a bool or a Rejection."""
 
-ADVISORY = "sample-"
-"""Streams named so only take advice from their fluents: what they certify holds in any state."""
-
 MOST_WARNINGS = 100
 """Different warnings that are kept: nobody reads more, and each input may fail."""
 
 
 @dataclass(frozen=True)
 class BoundStream:
-    """A declared stream, its function and output types; whether its name may make it an adviser."""
+    """A declared stream, its function and output types; whether it `advises` only, so that what it
+    certifies holds in any state; and its kind, which sorts the time that it takes.
+    """
 
     declaration: Stream
     function: StreamFunction
     output_types: tuple[tuple[str, ...], ...]
-    may_advise: bool = True
+    advises: bool = False
+    kind: StreamKind = StreamKind.OTHER
 
     @property
     def name(self) -> str:
@@ -47,12 +47,12 @@ class BoundStream:
     @property
     def is_fluent(self) -> bool:
         """Return whether what it certifies holds only in the state that it was shown."""
-        return bool(self.declaration.fluents) and not self.is_advisory
+        return bool(self.declaration.fluents) and not self.advises
 
     @property
     def is_advisory(self) -> bool:
         """Return whether it may look at the state, yet certifies nothing about it."""
-        return self.may_advise and bool(self.declaration.fluents) and self.name.startswith(ADVISORY)
+        return self.advises and bool(self.declaration.fluents)
 
 
 @dataclass

@@ -42,7 +42,7 @@ class Costs(Mapping[Fact, float]):
         self._functions = {bound.declaration.name: bound for bound in functions}
         self._objects = objects
         self._given = given
-        self._known: dict[Fact, float] = {}
+        self._computed: dict[Fact, float] = {}
         self._sums: dict[str, tuple[float, int]] = {}
 
     def __contains__(self, fact: object) -> bool:
@@ -61,17 +61,17 @@ class Costs(Mapping[Fact, float]):
         if any(word.startswith(MARK) for word in fact[1:]):
             total, count = self._sums.get(name, (0.0, 0))
             return total / count if count else UNKNOWN
-        if fact not in self._known:
-            self._known[fact] = cost = self._ask(fact)
+        if fact not in self._computed:
+            self._computed[fact] = cost = self._ask(fact)
             total, count = self._sums.get(name, (0.0, 0))
             self._sums[name] = (total + cost, count + 1)
-        return self._known[fact]
+        return self._computed[fact]
 
     def __iter__(self) -> Iterator[Fact]:
-        return iter({**self._given, **self._known})
+        return iter({**self._given, **self._computed})
 
     def __len__(self) -> int:
-        return len({**self._given, **self._known})
+        return len({**self._given, **self._computed})
 
     def of(self, action: Action, arguments: tuple[str, ...]) -> float:
         """Return the cost of an action with real arguments."""

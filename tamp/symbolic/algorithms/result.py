@@ -51,8 +51,8 @@ class StreamTask:
 
     def named(self, words: Iterable[str]) -> tuple[str, ...]:
         """Return those of the words that name objects a user knows: not poses, grasps, paths."""
-        known = (*self.task.objects, *self.task.domain.constants)
-        return named_objects(words, {x for x in known if isinstance(self.values.get(x, x), str)})
+        names = (*self.task.objects, *self.task.domain.constants)
+        return named_objects(words, {x for x in names if isinstance(self.values.get(x, x), str)})
 
 
 @dataclass(frozen=True)

@@ -92,7 +92,7 @@ def with_complements(
         return domain, goal
     signs = _signs(domain, goal)
     both = [
-        predicate for predicate in _resting(domain, names) if len(signs.get(predicate, ())) == 2
+        predicate for predicate in _dependent(domain, names) if len(signs.get(predicate, ())) == 2
     ]
     instead = Complements(
         names, {predicate: complement_name(predicate, domain) for predicate in both}
@@ -119,21 +119,23 @@ def _rewritten(action: Action, instead: Complements) -> Action:
     """Rewrite the action over complements; whether an effect happens must be known where a
     decided predicate says so.
     """
-    known = [_rewrite(action.precondition, True, instead, True)]
+    conditions = [_rewrite(action.precondition, True, instead, True)]
     effects: list[Effect] = []
     for effect in action.effects:
         happens = _rewrite(effect.condition, True, instead, True)
         does_not = _rewrite(Not(effect.condition), True, instead, True)
         if happens != effect.condition or does_not != Not(effect.condition):
             decided = Or((happens, does_not))
-            known.append(Forall(effect.parameters, decided) if effect.parameters else decided)
+            conditions.append(Forall(effect.parameters, decided) if effect.parameters else decided)
         effects.append(replace(effect, condition=happens))
     return replace(
-        action, precondition=And(tuple(known)) if known[1:] else known[0], effects=tuple(effects)
+        action,
+        precondition=And(tuple(conditions)) if conditions[1:] else conditions[0],
+        effects=tuple(effects),
     )
 
 
-def _resting(domain: Domain, decided: Collection[str]) -> list[str]:
+def _dependent(domain: Domain, decided: Collection[str]) -> list[str]:
     """Return the derived predicates that rest on decided ones, in any number of steps."""
     found: dict[str, None] = {}
     more = True

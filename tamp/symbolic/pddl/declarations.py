@@ -19,7 +19,7 @@ from tamp.symbolic.pddl.nodes import (
     warning,
 )
 from tamp.symbolic.pddl.structs import Parameter, Predicate
-from tamp.symbolic.pddl.typed import known_types, placeholders, typed_list
+from tamp.symbolic.pddl.typed import declared_types, placeholders, typed_list
 
 REQUIREMENTS = (
     ":strips", ":typing", ":negative-preconditions", ":disjunctive-preconditions", ":equality",
@@ -129,7 +129,7 @@ def parse_objects(
     lines: dict[str, int] = {}
     for entry in typed_list(nodes, what):
         name = as_name(entry.name, what)
-        own = known_types(entry.types, types) or ("object",)
+        own = declared_types(entry.types, types) or ("object",)
         before = found.get(name.text) or (constants or {}).get(name.text)
         if before is None:
             found[name.text], lines[name.text] = own, name.place.line

@@ -117,12 +117,12 @@ def _add_undeclared(
 ) -> list[str]:
     """Add predicates and functions that may be used undeclared, in place; return notes of them."""
     notes: list[str] = []
-    known = (types, predicates, functions)
+    declared = (types, predicates, functions)
     predicates |= {
-        n: p for n, p in undeclared.predicates.items() if not any(n in names for names in known)
+        n: p for n, p in undeclared.predicates.items() if not any(n in names for names in declared)
     }
     functions |= {
-        n: f for n, f in undeclared.functions.items() if not any(n in names for names in known)
+        n: f for n, f in undeclared.functions.items() if not any(n in names for names in declared)
     }
 
     for name, computed in undeclared.computed.items():

@@ -69,31 +69,31 @@ def _collect(
     if not group.items:
         return
     head = as_symbol(group.items[0], "a predicate or one of and, not, when, forall, increase")
-    rest = group.items[1:]
+    tail = group.items[1:]
 
     match head.text:
         case "and":
-            for part in rest:
+            for part in tail:
                 _collect(part, scope, derived, effects, condition, quantified)
         case "when":
             _expect(group, 2, "a condition and an effect")
-            inner = parse_formula(rest[0], scope)
+            inner = parse_formula(tail[0], scope)
             both = inner if condition == And(()) else And((condition, inner))
-            _collect(rest[1], scope, derived, effects, both, quantified)
+            _collect(tail[1], scope, derived, effects, both, quantified)
         case "forall":
             _expect(group, 2, "a list of variables and an effect")
             listed = parameters(
-                as_group(rest[0], "a list of variables such as (?x - body)").items,
+                as_group(tail[0], "a list of variables such as (?x - body)").items,
                 scope.domain.types,
             )
             inside, bound = scope.with_variables(listed)
             same = repeated(listed, bound)
             where = And((condition, *same)) if same else condition
-            _collect(rest[1], inside, derived, effects, where, (*quantified, *bound))
+            _collect(tail[1], inside, derived, effects, where, (*quantified, *bound))
         case "increase":
             if quantified or condition != And(()):
                 raise error(head, "a cost inside 'when' or 'forall' is not supported")
-            effects.cost = _added(effects.cost, _increase(group, rest, scope), head)
+            effects.cost = _added(effects.cost, _increase(group, tail, scope), head)
         case "decrease" | "assign" | "scale-up" | "scale-down":
             raise error(
                 head, unsupported(head.text), remedy="Costs grow by (increase (total-cost) ...)"
@@ -102,7 +102,7 @@ def _collect(
             raise error(head, unsupported(head.text))
         case "not":
             _expect(group, 1, "one fact")
-            atom = _changed(rest[0], scope, derived)
+            atom = _changed(tail[0], scope, derived)
             effects.simple.append(Effect(atom, False, condition, quantified))
         case _:
             atom = _changed(group, scope, derived)
@@ -128,16 +128,16 @@ def _changed(node: Node, scope: Scope, derived: Set[str]) -> Atom:
     return atom
 
 
-def _increase(group: Group, rest: Sequence[Node], scope: Scope) -> float | Atom:
+def _increase(group: Group, tail: Sequence[Node], scope: Scope) -> float | Atom:
     _expect(group, 2, "(total-cost) and an amount")
-    target = as_group(rest[0], "(total-cost)")
+    target = as_group(tail[0], "(total-cost)")
     if target.head != TOTAL_COST or len(target.items) != 1:
         what = (
             f"only (total-cost) can be increased, found {show(target)}: tamp has no numeric fluents"
         )
         raise error(target, what)
 
-    amount = rest[1]
+    amount = tail[1]
     if isinstance(amount, Symbol):
         value = parse_number(amount)
         if value < 0:

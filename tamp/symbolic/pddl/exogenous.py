@@ -62,11 +62,11 @@ def compile_away(
     """
     made = [*streams.streams, *streams.rules]
     changing = domain.fluent_predicates | domain.derived_predicates
-    resting = _resting(made, changing)
-    if not resting:
+    dependent = _dependent(made, changing)
+    if not dependent:
         return CompiledTask(domain, streams, goal, facts)
     for atom, sign in atoms_of_conditions(domain, goal):
-        if not sign and atom.predicate in resting:
+        if not sign and atom.predicate in dependent:
             what = (
                 f"'{atom.predicate}' has to be false here, "
                 "and its stream waits for what actions change"
@@ -83,7 +83,7 @@ def compile_away(
     awaited = {
         atom.predicate for stream in made for atom in stream.domain
     } & domain.fluent_predicates
-    rewriting = _Rewriting(domain, resting, sorted(awaited), facts)
+    rewriting = _Rewriting(domain, dependent, sorted(awaited), facts)
     changed = {stream.name: rewriting.stream(stream) for stream in made}
     actions = tuple(rewriting.action(action) for action in domain.actions)
     derived = tuple(rewriting.rules)
@@ -115,18 +115,18 @@ class _Rewriting:
     def __init__(
         self,
         domain: Domain,
-        resting: Collection[str],
+        dependent: Collection[str],
         awaited: Collection[str],
         facts: frozenset[Fact],
     ) -> None:
         self._domain = domain
         self._changing = domain.fluent_predicates | domain.derived_predicates
         self.predicates: dict[str, Predicate] = {}
-        self.now = {predicate: self._like(predicate, f"{predicate}-now") for predicate in resting}
+        self.now = {predicate: self._like(predicate, f"{predicate}-now") for predicate in dependent}
         self.was = {predicate: self._like(predicate, f"was-{predicate}") for predicate in awaited}
         self.rules = [replace(rule, body=renamed(rule.body, self.now)) for rule in domain.derived]
         self.started = {(self.was[fact[0]], *fact[1:]) for fact in facts if fact[0] in self.was}
-        for predicate in resting:
+        for predicate in dependent:
             given = [fact for fact in facts if fact[0] == predicate]
             if given:
                 name = self._like(predicate, f"given-{predicate}")
@@ -188,7 +188,7 @@ class _Rewriting:
         return name
 
 
-def _resting(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
+def _dependent(streams: Sequence[Stream], changing: Collection[str]) -> list[str]:
     """Return what streams certify whose domain changes, or rests on such a stream."""
     found: dict[str, None] = {}
     before = -1
@@ -208,12 +208,12 @@ def _rule(head: Atom, variables: Sequence[str], body: Sequence[Atom]) -> Derived
     plain = len(set(head.terms)) == len(head.terms) and set(head.terms) <= set(variables)
     terms = head.terms if plain else fresh
     equal = () if plain else tuple(Atom("=", pair) for pair in zip(fresh, head.terms, strict=True))
-    rest = tuple(Parameter(variable) for variable in variables if variable not in terms)
+    quantified = tuple(Parameter(variable) for variable in variables if variable not in terms)
     conditions = And((*body, *equal))
     return Derived(
         replace(head, terms=terms),
         tuple(Parameter(term) for term in terms),
-        Exists(rest, conditions) if rest else conditions,
+        Exists(quantified, conditions) if quantified else conditions,
     )
 
 

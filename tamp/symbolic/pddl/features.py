@@ -65,6 +65,6 @@ def lacking(written: str, feature: str) -> str:
     return f"'{written}' is not supported: tamp has no {feature}"
 
 
-def sections(known: Iterable[str]) -> tuple[str, ...]:
+def sections(supported: Iterable[str]) -> tuple[str, ...]:
     """Return the keywords of features that are none of the known ones."""
-    return tuple(word for word in FEATURES if word.startswith(":") and word not in known)
+    return tuple(word for word in FEATURES if word.startswith(":") and word not in supported)

@@ -8,10 +8,13 @@ from tamp.symbolic.pddl.structs import And, Atom, Exists, Fact, Forall, Formula,
 
 
 def to_text(item: Formula | Fact) -> str:
-    """Format as PDDL text on one line; parsing it gives the formula again."""
+    """Format as PDDL text on one line; parsing it gives the formula again.
+
+    A variable is shown up to a blank in its name: what comes behind tells those of one name apart.
+    """
     match item:
         case Atom(predicate, terms):
-            return _group(predicate, *terms)
+            return _group(predicate, *map(_shown, terms))
         case Not(body):
             return _group("not", to_text(body))
         case And(parts):
@@ -30,8 +33,14 @@ def _parameters(parameters: Sequence[Parameter]) -> str:
     # An untyped variable before a typed one would take its type, so all types are written out, or
     # none.
     if all(parameter.types == ("object",) for parameter in parameters):
-        return _group(*(parameter.name for parameter in parameters))
-    return _group(*(f"{parameter.name} - {_types(parameter.types)}" for parameter in parameters))
+        return _group(*(_shown(parameter.name) for parameter in parameters))
+    return _group(
+        *(f"{_shown(parameter.name)} - {_types(parameter.types)}" for parameter in parameters)
+    )
+
+
+def _shown(name: str) -> str:
+    return name.partition(" ")[0]
 
 
 def _types(types: tuple[str, ...]) -> str:

@@ -93,27 +93,27 @@ def parse_formula(node: Node, scope: Scope) -> Formula:
     if not group.items:
         return And(())
     head = as_symbol(group.items[0], "a predicate or one of " + ", ".join(CONNECTIVES))
-    rest = group.items[1:]
+    tail = group.items[1:]
 
     match head.text:
         case "and":
-            return And(tuple(parse_formula(part, scope) for part in rest))
+            return And(tuple(parse_formula(part, scope) for part in tail))
         case "or":
-            return Or(tuple(parse_formula(part, scope) for part in rest))
+            return Or(tuple(parse_formula(part, scope) for part in tail))
         case "not":
             _count(group, head, 1, "one condition")
-            return Not(parse_formula(rest[0], scope))
+            return Not(parse_formula(tail[0], scope))
         case "imply":
             _count(group, head, 2, "two conditions")
-            return Or((Not(parse_formula(rest[0], scope)), parse_formula(rest[1], scope)))
+            return Or((Not(parse_formula(tail[0], scope)), parse_formula(tail[1], scope)))
         case "exists" | "forall":
             _count(group, head, 2, "a list of variables and a condition")
             listed = parameters(
-                as_group(rest[0], "a list of variables such as (?x - body)").items,
+                as_group(tail[0], "a list of variables such as (?x - body)").items,
                 scope.domain.types,
             )
             inner, bound = scope.with_variables(listed)
-            body, same = parse_formula(rest[1], inner), repeated(listed, bound)
+            body, same = parse_formula(tail[1], inner), repeated(listed, bound)
             if head.text == "exists":
                 return Exists(bound, And((body, *same)) if same else body)
             return Forall(bound, Or((body, *map(Not, same))) if same else body)

@@ -16,6 +16,9 @@ from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.complement import complement_name
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, Stream, StreamFile
 
+SAMPLE = "sample-"
+"""How the names of streams begin that propose; so named, they only take advice from the state."""
+
 POSE = "pose"
 """The predicate and the type of a body's pose."""
 
@@ -245,7 +248,7 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
     positions = {*POSITIONS}
     for one in domain.predicates.values():
         positions |= {
-            (one.name, at) for at, known in enumerate(one.parameters) if POSE in known.types
+            (one.name, at) for at, declared in enumerate(one.parameters) if POSE in declared.types
         }
     if sample is not None:
         atoms = [

@@ -23,7 +23,7 @@ class Section:
 
 
 def read_sections(
-    text: str, kind: str, known: Sequence[str], file: str | Path | None
+    text: str, kind: str, keywords: Sequence[str], file: str | Path | None
 ) -> tuple[Symbol, list[Section]]:
     """Read `(define (KIND NAME) section ...)`: the name and the sections, their keywords
     checked.
@@ -42,7 +42,7 @@ def read_sections(
             title, f"expected ({kind} NAME) with one name, found {len(title.items) - 1} names"
         )
     return as_name(title.items[1], "a name"), [
-        _section(item, kind, known) for item in form.items[2:]
+        _section(item, kind, keywords) for item in form.items[2:]
     ]
 
 
@@ -61,21 +61,21 @@ def items_of(sections: Sequence[Section], keyword: str) -> tuple[Node, ...]:
     return section.items if section else ()
 
 
-def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> dict[str, Node]:
+def keyword_values(nodes: Sequence[Node], owner: str, keywords: Sequence[str]) -> dict[str, Node]:
     """Read `:keyword value :keyword value`; `owner` says whose they are: "action 'pick'"."""
     values: dict[str, Node] = {}
     position = 0
 
     while position < len(nodes):
-        keyword = as_symbol(nodes[position], f"a keyword of {owner}: {', '.join(known)}")
-        if keyword.text not in known and keyword.text in FEATURES:
+        keyword = as_symbol(nodes[position], f"a keyword of {owner}: {', '.join(keywords)}")
+        if keyword.text not in keywords and keyword.text in FEATURES:
             raise error(keyword, unsupported(keyword.text, keyword.written))
-        if keyword.text not in known:
+        if keyword.text not in keywords:
             raise error(
                 keyword,
                 f"unknown keyword '{keyword.written}' of {owner}",
                 found=keyword.text,
-                choices=known,
+                choices=keywords,
             )
         if keyword.text in values:
             raise error(keyword, f"keyword '{keyword.text}' of {owner} stands twice")
@@ -88,14 +88,14 @@ def keyword_values(nodes: Sequence[Node], owner: str, known: Sequence[str]) -> d
     return values
 
 
-def _section(node: Node, kind: str, known: Sequence[str]) -> Section:
-    group = as_group(node, f"a section of the {kind} such as ({known[0]} ...)")
+def _section(node: Node, kind: str, keywords: Sequence[str]) -> Section:
+    group = as_group(node, f"a section of the {kind} such as ({keywords[0]} ...)")
     if not group.items:
-        raise error(group, f"expected a section of the {kind}, found '()'", choices=known)
-    keyword = as_symbol(group.items[0], f"a section's keyword, one of {', '.join(known)}")
-    if keyword.text not in known and keyword.text in FEATURES:
+        raise error(group, f"expected a section of the {kind}, found '()'", choices=keywords)
+    keyword = as_symbol(group.items[0], f"a section's keyword, one of {', '.join(keywords)}")
+    if keyword.text not in keywords and keyword.text in FEATURES:
         raise error(keyword, unsupported(keyword.text, keyword.written))
-    if keyword.text not in known:
+    if keyword.text not in keywords:
         message = f"unknown section '{keyword.written}' of the {kind}"
-        raise error(keyword, message, found=keyword.text, choices=known)
+        raise error(keyword, message, found=keyword.text, choices=keywords)
     return Section(keyword, group.items[1:], group)

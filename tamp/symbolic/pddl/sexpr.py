@@ -128,15 +128,15 @@ def _words(
 ) -> Iterator[tuple[str, int, int]]:
     """Generate each word and parenthesis with its line and column."""
     lines = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    known: dict[str, str] = {}
+    interned: dict[str, str] = {}
     for number, line in enumerate(lines, start=1 + line_offset):
         shift = 1 + (column_offset if number == 1 + line_offset else 0)
         for match in _WORD.finditer(line.partition(";")[0]):
             word, column = match[0], match.start() + shift
-            same = known.get(word)  # one string for all of its places: a third of the memory
+            same = interned.get(word)  # one string for all of its places: a third of the memory
             if same is None:
                 _check(word, Place(file, number, column))
-                same = known[word] = word
+                same = interned[word] = word
             yield same, number, column
 
 

@@ -48,12 +48,12 @@ def _cyclic(uses: Sequence[tuple[str, Atom, bool]]) -> Exception:
     """
     import networkx as nx
 
-    rests_on = nx.DiGraph((head, atom.predicate) for head, atom, _ in uses)
+    depends_on = nx.DiGraph((head, atom.predicate) for head, atom, _ in uses)
     for head, atom, positive in uses:
-        if positive or not nx.has_path(rests_on, atom.predicate, head):
+        if positive or not nx.has_path(depends_on, atom.predicate, head):
             continue
         way = nx.shortest_path(  # pyright: ignore[reportUnknownMemberType]
-            rests_on, atom.predicate, head
+            depends_on, atom.predicate, head
         )
         place = atom.place or Place(None, 1, 1)
         cycle = " rests on ".join((head, f"not {way[0]}", *way[1:]))

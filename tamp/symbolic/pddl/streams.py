@@ -189,11 +189,11 @@ def _function(section: Section, domain: Domain, parse: Callable[[Node, Scope], A
     refuse_duplicates(arguments, "argument")
     scope = _scope(domain, arguments)
     term = parse(head, scope)
-    rest = section.items[1:]
-    if len(rest) == 1 and isinstance(rest[0], Group):
-        node: Node | None = rest[0]
+    tail = section.items[1:]
+    if len(tail) == 1 and isinstance(tail[0], Group):
+        node: Node | None = tail[0]
     else:
-        values = keyword_values(rest, f"function '{term.predicate}'", (":inputs", ":domain"))
+        values = keyword_values(tail, f"function '{term.predicate}'", (":inputs", ":domain"))
         node = values.get(":domain")
         given = [symbol.text for symbol in _variables(values.get(":inputs"), ":inputs")]
         if ":inputs" in values and given != list(term.terms):

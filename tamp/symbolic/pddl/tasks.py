@@ -204,12 +204,12 @@ def _check_metric(section: Section | None) -> None:
     """
     if section is None:
         return
-    direction, *rest = section.items or (section.group,)
+    direction, *tail = section.items or (section.group,)
     if isinstance(direction, Symbol) and direction.text == "maximize":
         raise error(direction, lacking("maximize", "metrics to maximize"))
-    if not (as_symbol(direction, "'minimize'").text == "minimize" and len(rest) == 1):
+    if not (as_symbol(direction, "'minimize'").text == "minimize" and len(tail) == 1):
         raise error(direction, "expected (:metric minimize (total-cost))")
-    target = rest[0]
+    target = tail[0]
     name = target.head if isinstance(target, Group) and len(target.items) == 1 else None
     used = {word for word in _words(target) if word in FEATURES}
     if used:

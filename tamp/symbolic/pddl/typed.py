@@ -47,7 +47,7 @@ def parameters(nodes: Sequence[Node], types: Mapping[str, str]) -> tuple[Paramet
     for entry in entries:
         as_variable(entry.name)
     return tuple(
-        Parameter(entry.name.text, known_types(entry.types, types) or ("object",))
+        Parameter(entry.name.text, declared_types(entry.types, types) or ("object",))
         for entry in entries
     )
 
@@ -73,7 +73,7 @@ def distinct(listed: Sequence[Parameter], taken: Collection[str] = ()) -> tuple[
     return tuple(result)
 
 
-def known_types(written: Iterable[Symbol], types: Mapping[str, str]) -> tuple[str, ...]:
+def declared_types(written: Iterable[Symbol], types: Mapping[str, str]) -> tuple[str, ...]:
     """Return the types' names, each checked to be declared."""
     written = tuple(written)
     for symbol in written:

@@ -44,21 +44,21 @@ def astar(search: SearchSpace) -> Plan | None:
         search.count()
         for operator in s.applicable(closed):
             after = s.apply(operator, state, closed)
-            known = search.best.get(after, math.inf)
-            if cost + s.cost[operator] >= known:
+            best = search.best.get(after, math.inf)
+            if cost + s.cost[operator] >= best:
                 continue
             step = s.step_cost(operator, state)
             reached = cost + step
-            if reached >= known:
+            if reached >= best:
                 continue
             search.best[after] = reached
             search.parents[after] = (state, operator)
-            rest = estimates.get(after)
-            if rest is None:
-                rest = max(0.0, h - step)
-            if reached + rest < search.below:
+            to_go = estimates.get(after)
+            if to_go is None:
+                to_go = max(0.0, h - step)
+            if reached + to_go < search.below:
                 number -= 1
-                heappush(queue, (reached + rest, rest, number, reached, after, state))
+                heappush(queue, (reached + to_go, to_go, number, reached, after, state))
 
     search.bound = search.below
     return None

@@ -23,10 +23,18 @@ Way = frozenset[Literal]
 
 @dataclass(frozen=True)
 class Part:
-    """A part of the goal: the literal that names it, and all ways in which it can hold."""
+    """A part of the goal: the literal that names it, and all ways in which it can hold.
+
+    Attributes:
+        literal: Names it.
+        ways: Its ways; one that asks for nothing where they are too many.
+        choices: Parts of which it holds together or not at all, one such list for each rule of an
+            auxiliary fact: a goal with "or" or "exists" is one fact.
+    """
 
     literal: Literal
     ways: tuple[Way, ...]
+    choices: tuple[tuple[Part, ...], ...] = ()
 
 
 def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
@@ -35,10 +43,23 @@ def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
     literals = [(fact, True) for fact in sorted(instantiated.goal.positive)]
     literals += [(fact, False) for fact in sorted(instantiated.goal.negative)]
     opened: dict[Literal, None] = {}
+    auxiliary = instantiated.meanings.keys()
     for literal in literals:
-        for part in _opened(literal, rules, instantiated.meanings.keys(), ()):
+        for part in _opened(literal, rules, auxiliary, ()):
             opened[part] = None
-    return [Part(literal, tuple(_Opener(rules).ways(literal))) for literal in opened]
+    return [_part(literal, rules, auxiliary) for literal in opened]
+
+
+def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str]) -> Part:
+    fact, wanted = literal
+    choices: list[tuple[Part, ...]] = []
+    if wanted and fact[0] in auxiliary:
+        for axiom in rules.get(fact, []):
+            opened = dict.fromkeys(
+                part for one in _body(axiom) for part in _opened(one, rules, auxiliary, (fact,))
+            )
+            choices.append(tuple(Part(one, tuple(_Opener(rules).ways(one))) for one in opened))
+    return Part(literal, tuple(_Opener(rules).ways(literal)), tuple(choices))
 
 
 Rules = dict[Fact, list[Axiom]]

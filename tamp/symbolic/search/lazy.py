@@ -61,8 +61,8 @@ class _LazySearch:
 
     def is_closed(self, state: State, cost: float) -> bool:
         """Check that a state was closed at no higher cost; greedy search reopens none."""
-        known = self._closed.get(state)
-        return known is not None and (self._greedy or cost >= known)
+        closed_at = self._closed.get(state)
+        return closed_at is not None and (self._greedy or cost >= closed_at)
 
     def close(self, state: State, cost: float, parent: State | None, operator: int) -> State:
         """Close a state: note the way to it; return it with its derived facts."""
@@ -122,11 +122,11 @@ class _LazySearch:
                 continue
 
             after, step = s.apply(operator, state, closed), s.cost[operator]
-            known = self._closed.get(after)
-            if known is not None and (greedy or cost + step >= known):
+            closed_at = self._closed.get(after)
+            if closed_at is not None and (greedy or cost + step >= closed_at):
                 continue
             reached = cost + s.step_cost(operator, state)
-            if reached == math.inf or (known is not None and reached >= known):
+            if reached == math.inf or (closed_at is not None and reached >= closed_at):
                 continue
 
             # Among equals greedy search takes what is nearest to the newest progress, weighted A*

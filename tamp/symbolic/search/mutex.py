@@ -12,13 +12,11 @@ from dataclasses import replace
 from itertools import combinations
 
 from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search.compatible_ways import hold_together
 from tamp.symbolic.search.goal_ways import Literal, Part, goal_parts
 from tamp.symbolic.search.lasting import lasting
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.system.deadline import Deadline
-
-STEPS = 20_000
-"""Choices looked at in the attempt to let all goals hold together."""
 
 MOST_PAIRS = 4_000_000
 """Pairs of facts of the largest task that is looked at: 2,000 facts take some seconds."""
@@ -60,12 +58,14 @@ class Mutexes:
         self, instantiated: InstantiatedTask, parts: list[Part], deadline: Deadline
     ) -> None:
         self._parts, self._deadline = parts, deadline
-        absent = {
-            literal for part in parts for way in part.ways for literal in way if not literal[1]
-        }
+        named = [
+            part for top in parts for part in (top, *(p for some in top.choices for p in some))
+        ]
+        wanted = {literal for part in named for way in part.ways for literal in way}
+        absent = {literal for literal in wanted if not literal[1]}
         heads = {axiom.head for axiom in instantiated.axioms}
         facts = {(fact, True) for fact in (instantiated.initial | instantiated.reachable) - heads}
-        facts |= {literal for part in parts for way in part.ways for literal in way}
+        facts |= wanted
         self._number = {
             literal: i
             for i, literal in enumerate([*sorted(facts), *((head, True) for head in heads)])
@@ -89,12 +89,9 @@ class Mutexes:
 
     def conflict(self) -> tuple[Literal, ...] | None:
         """Find the fewest parts of the goal that cannot hold together, as far as pairs show it."""
-        possible = [
-            [way for way in map(self._numbers, part.ways) if self._consistent(way)]
-            for part in self._parts
-        ]
+        possible = [self._possible(part) for part in self._parts]
         for part, ways in zip(self._parts, possible, strict=True):
-            if not ways:
+            if not ways or (part.choices and not any(map(self._holds, part.choices))):
                 return (part.literal,)
 
         named = {part.literal for part in self._parts}
@@ -106,36 +103,25 @@ class Mutexes:
             self._look()
             if not any(self._together(a, b) for a in possible[i] for b in possible[j]):
                 return (self._parts[i].literal, self._parts[j].literal)
-        if self._all(possible):
+        if self._hold_together(possible):
             return None
 
         kept = list(range(len(possible)))
         for index in list(kept):
-            rest = [k for k in kept if k != index]
-            if not self._all([possible[k] for k in rest]):
-                kept = rest
+            others = [k for k in kept if k != index]
+            if not self._hold_together([possible[k] for k in others]):
+                kept = others
         return tuple(self._parts[k].literal for k in kept)
 
-    def _all(self, possible: list[list[tuple[int, ...]]]) -> bool:
-        """Check that ways, one a part, can go together pair by pair; true where it is undecided."""
-        order = sorted(possible, key=len)
-        steps = 0
+    def _possible(self, part: Part) -> list[tuple[int, ...]]:
+        return [way for way in map(self._numbers, part.ways) if self._consistent(way)]
 
-        def choose(index: int, allowed: int) -> bool:
-            nonlocal steps
-            if index == len(order):
-                return True
-            for way in order[index]:
-                steps += 1
-                if steps > STEPS:
-                    return True
-                if all(allowed >> k & 1 for k in way) and choose(
-                    index + 1, allowed & self._partners(way)
-                ):
-                    return True
-            return False
+    def _hold_together(self, possible: list[list[tuple[int, ...]]]) -> bool:
+        return hold_together(possible, self._partners, self._look)
 
-        return choose(0, self._alive)
+    def _holds(self, parts: tuple[Part, ...]) -> bool:
+        """Check that these may hold together, as far as pairs show it."""
+        return self._hold_together([self._possible(part) for part in parts])
 
     def _fixpoint(self, instantiated: InstantiatedTask) -> None:
         """Apply operators and rules to pairs until no new one comes."""
@@ -229,10 +215,12 @@ class Mutexes:
     def _body(self, positive: Iterable[Fact], negative: Iterable[Fact]) -> tuple[int, ...]:
         literals = [(fact, True) for fact in positive] + [(fact, False) for fact in negative]
         return tuple(
-            sorted(self._number.get(literal, -1) for literal in literals if self._known(literal))
+            sorted(
+                self._number.get(literal, -1) for literal in literals if self._is_watched(literal)
+            )
         )
 
-    def _known(self, literal: Literal) -> bool:
+    def _is_watched(self, literal: Literal) -> bool:
         """Check that a literal is looked at: absences only where the goal wants them."""
         return literal[1] or literal in self._absent
 

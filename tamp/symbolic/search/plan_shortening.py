@@ -22,19 +22,19 @@ def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list
         The remaining operators and their cost with prices.
     """
     s = successors
-    rest = list(plan)
-    left = _run(s, s.initial, rest)[1]
+    remaining = list(plan)
+    left = _run(s, s.initial, remaining)[1]
     kept: list[int] = []
     state, cost = s.initial, 0.0
-    while rest:
-        shorter, reduced = _run(s, state, rest[1:])
+    while remaining:
+        shorter, reduced = _run(s, state, remaining[1:])
         if shorter is not None and reduced <= left + 1e-9:
-            rest, left = shorter, reduced
+            remaining, left = shorter, reduced
             continue
-        step = s.step_cost(rest[0], state)
-        kept.append(rest[0])
-        state, cost, left = s.apply(rest[0], state, s.closure(state)), cost + step, left - step
-        rest = rest[1:]
+        step = s.step_cost(remaining[0], state)
+        kept.append(remaining[0])
+        state, cost, left = s.apply(remaining[0], state, s.closure(state)), cost + step, left - step
+        remaining = remaining[1:]
     return kept, cost
 
 
@@ -43,13 +43,13 @@ def _run(s: Successors, state: State, plan: list[int]) -> tuple[list[int] | None
     None without the goal.
     """
     cost = 0.0
-    rest: list[int] = []
+    remaining: list[int] = []
     for operator in plan:
         closed = s.closure(state)
         if closed & s.before[operator] == s.before[operator] and not closed & s.absent[operator]:
             cost += s.step_cost(operator, state)
             state = s.apply(operator, state, closed)
-            rest.append(operator)
+            remaining.append(operator)
     if cost == math.inf or not s.holds_goal(s.closure(state)):
         return None, math.inf
-    return rest, cost
+    return remaining, cost

@@ -114,12 +114,12 @@ class _World:
         self._static = _by_predicate(static)
         self._rows = dict(self._static)
         self._plain: dict[int, tuple[Atom, ...]] = {}
-        self._known: dict[Fact, bool] = {}
+        self._truths: dict[Fact, bool] = {}
         self._asked: tuple[frozenset[str], dict[Fact, bool]] | None = None
 
     def enter(self, state: Iterable[Fact], shown: Iterable[Fact]) -> None:
         """Go to a state: its fluent facts, and what was certified of it alone."""
-        self._rows, self._known, self._asked = dict(self._static), {}, None
+        self._rows, self._truths, self._asked = dict(self._static), {}, None
         for predicate, facts in _by_predicate((*state, *shown)).items():
             self._rows[predicate] = facts | self._static.get(predicate, set())
 
@@ -166,16 +166,16 @@ class _World:
 
     def _where(self, formula: Formula, sign: bool) -> tuple[Atom, ...]:
         """Return the atoms that are facts wherever the formula holds, or wherever it does not."""
-        known = self._plain.get(id(formula))
-        if known is None:
+        cached = self._plain.get(id(formula))
+        if cached is None:
             atoms = conjunct_atoms(formula) if sign else guard_atoms(formula)
             kept = (
                 atom
                 for atom in atoms
                 if atom.predicate not in self._rules and atom.predicate not in self._types
             )
-            known = self._plain[id(formula)] = tuple(kept)
-        return known
+            cached = self._plain[id(formula)] = tuple(kept)
+        return cached
 
     def _bindings(
         self, parameters: Sequence[Parameter], atoms: Sequence[Atom], binding: Binding
@@ -198,11 +198,11 @@ class _World:
                     len(self._of(one)),
                 ),
             )
-            rest = [one for one in atoms if one is not atom]
+            others = [one for one in atoms if one is not atom]
             for fact in self._of(atom):
                 grown = self._matched(atom, fact, names, binding)
                 if grown is not None:
-                    yield from self._join(rest, names, grown)
+                    yield from self._join(others, names, grown)
             return
 
         left = [name for name in names if name not in binding]
@@ -247,8 +247,8 @@ class _World:
         Where its predicate rests on itself: the least fixpoint over what is asked for of its kind
         on the way to it.
         """
-        if fact in self._known:
-            return self._known[fact]
+        if fact in self._truths:
+            return self._truths[fact]
         outer, kind = self._asked, self._kinds[fact[0]]
         if outer is not None and outer[0] == kind:  # within the fixpoint: what is known by now
             return outer[1].setdefault(fact, False)
@@ -262,7 +262,7 @@ class _World:
                     asked[one] = changed = True
             changed = fact[0] in self._recursive and (changed or len(asked) > size)
         self._asked = outer
-        self._known.update(asked)
+        self._truths.update(asked)
         return asked[fact]
 
     def _follows(self, fact: Fact) -> bool:

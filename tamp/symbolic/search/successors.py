@@ -93,17 +93,17 @@ class Successors:
 
     def price(self, fact: Fact) -> float:
         """Return the price of a static fact, asked for once."""
-        known = self._prices.get(fact)
-        if known is None:
-            known = self._prices[fact] = self._ask(fact)
-        return known
+        cached = self._prices.get(fact)
+        if cached is None:
+            cached = self._prices[fact] = self._ask(fact)
+        return cached
 
     def mask(self, facts: Iterable[Fact]) -> State:
         """Return the bits of those facts that some condition mentions."""
         if isinstance(facts, frozenset):
-            known = self._masks.get(facts)
-            if known is not None:
-                return known
+            cached = self._masks.get(facts)
+            if cached is not None:
+                return cached
         mask, number = 0, self.number
         for fact in facts:
             i = number.get(fact)
@@ -155,14 +155,14 @@ class Successors:
         """Return for a guard's facts the operators that it costs something when it is triggered,
         and how much.
         """
-        known = self._penalties.get(facts)
-        if known is None:
-            known = self._penalties[facts] = dict[int, float]()
+        cached = self._penalties.get(facts)
+        if cached is None:
+            cached = self._penalties[facts] = dict[int, float]()
             for index, waived_by in self._owners(facts):
                 price = math.inf if waived_by is None else self.price(waived_by)
                 if price > 0.0:
-                    known[index] = known.get(index, 0.0) + price
-        return known
+                    cached[index] = cached.get(index, 0.0) + price
+        return cached
 
     def _owners(self, facts: State) -> Iterator[tuple[int, Fact | None]]:
         """Find the operators that have the guard with these facts, and what waives it."""
@@ -189,14 +189,14 @@ class Successors:
     def extras(self, state: State) -> dict[int, float]:
         """Return the operators with triggered guards that have a price, and these prices' sums."""
         key = state & self.guard_mask
-        known = self._extras.get(key)
-        if known is None:
-            known = dict[int, float]()
+        cached = self._extras.get(key)
+        if cached is None:
+            cached = dict[int, float]()
             for facts in self.triggered(key):
                 for index, price in self.penalties(facts).items():
-                    known[index] = known.get(index, 0.0) + price
-            self._extras[key] = known
-        return known
+                    cached[index] = cached.get(index, 0.0) + price
+            self._extras[key] = cached
+        return cached
 
     def step_cost(self, index: int, state: State) -> float:
         """Return the operator's cost in the state, with the prices of its triggered guards;

@@ -12,6 +12,7 @@ import pytest
 import tamp
 from tamp.commands.robot import main
 from tamp.errors import InputError
+from tamp.geometric.loading.robots import ROBOTS
 from tests.commands.robot_folder.urdf import SIX, arm_text
 
 BRANCH = """
@@ -59,6 +60,10 @@ CASES = {
     ),
     "too-high": (arm_text(), (*ARM, "--base", "fixed", "--height", "9"), r"reaches nothing.*nor any table"),
     "wide": (arm_text(), (*ARM, "--opening", "3"), r"opens from 0.01 to 0.2 m"),
+    "cup-small": (arm_text(), (*ARM, "--suction", "0.001"), r"rim of a cup has a radius of 0.003 to 0.15 m"),
+    "cup-strong": (arm_text(), (*ARM, "--suction", "0.02", "--force", "500"), r"pulls with 127 N at most"),
+    "cup-opens": (arm_text(), (*ARM, "--suction", "0.02", "--opening", "0.1"), r"--opening is of fingers"),
+    "cup-fingers": (arm_text(), (*ARM, "--suction", "0.02", "--gripper", "l", "r"), r"--gripper is of fingers"),
     "fingers-unknown": (arm_text(), (*ARM, "--gripper", "l", "r"), r"unknown joint 'l'"),
     "fingers-turn": (
         arm_text(extra=FINGERS.format(kind="revolute", axis="0 1 0")), (*ARM, "--gripper", "l", "r"), r"'r' turns",
@@ -150,6 +155,26 @@ def test_a_damaged_folder_is_one_clear_error_before_planning(
     change(folder)
     with pytest.raises(InputError, match=says):
         tamp.load_problem("one_object", robot=folder)
+
+
+CUP = {
+    "force": (yaml("force: 75.4", "force: 900"), r"pulls with 127 N at most, not with 900"),
+    "radius": (yaml("radius: 0.02", "radius: -0.02"), r"radius"),
+    "tilt": (yaml("tilt: 0.087", "tilt: 3.087"), r"tilt: a face may lean by 0 to 0.785 rad"),
+    "fingers": (yaml("  radius:", "  opening: 0.1\n  radius:"), r"unknown key 'opening'.*Choices: .*radius"),
+    "kind": (yaml("kind: suction", "kind: magnet"), r"unknown kind of gripper 'magnet'. .*parallel, suction"),
+    "no-radius": (yaml("  radius: 0.02\n", ""), r"radius"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CUP)
+def test_a_damaged_cup_is_one_clear_error_before_planning(name: str, tmp_path: Path) -> None:
+    change, says = CUP[name]
+    folder = tmp_path / "cup"
+    shutil.copytree(ROBOTS["ur5_suction"]().folder, folder)
+    change(folder)
+    with pytest.raises(InputError, match=says):
+        tamp.load_problem("parcels", robot=folder)
 
 
 def test_an_unknown_robot_names_the_known_ones() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import tamp
-from tamp.execution.execute import Circumstances, execute
+from tamp.execution.execute import ExecutionOptions, execute
 from tamp.plan.open import open_plan
 from tamp.verification.verify import verify
 
@@ -37,7 +37,7 @@ def test_a_robot_of_ones_own_solves_a_shipped_problem(
     report = verify(plan)
     assert report.holds, report.text()
     assert any("given beside the problem" in note for note in report.notes)
-    assert execute(open_plan(plan), Circumstances(grasp="constraint")).reached
+    assert execute(open_plan(plan), ExecutionOptions(grasp="constraint")).reached
 
 
 def test_a_bolted_arm_never_moves_its_base(bolted: Path, tmp_path: Path) -> None:

@@ -38,7 +38,7 @@ def behind(robot: Robot, *bodies: Body, half: float = 3.0) -> Gap | None:
 def test_the_disc_is_the_largest_in_the_base(robot: Robot) -> None:
     passage = Passage(scene(), robot)
     size = robot.links[0].parts[0].shape.size  # type: ignore[union-attr]
-    assert passage.known and passage.radius <= min(size[:2]) / 2
+    assert passage.is_mapped and passage.radius <= min(size[:2]) / 2
 
 
 @pytest.mark.parametrize("middle", [-1.0, 0.0, 0.7])
@@ -77,7 +77,7 @@ def test_what_can_be_taken_away_and_what_is_above_the_base_is_no_wall(robot: Rob
 
 
 def test_a_room_too_large_for_fine_cells_is_not_judged(robot: Robot) -> None:
-    assert not Passage(scene(half=40.0), robot).known
+    assert not Passage(scene(half=40.0), robot).is_mapped
     assert behind(robot, wall("wall", -80.0, 80.0), half=40.0) is None
 
 

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from grounding.demonstrate.folder import Source
 from grounding.demonstrate.relation import parse_relation
 from grounding.demonstrate.runner import Runner
-from grounding.demonstrate.studio import Source, Studio
+from grounding.demonstrate.studio import Studio
 from grounding.demonstrate.workbench import Workbench
 from tests.view.browser import program
 

@@ -261,6 +261,22 @@ def test_looking_around_moves_no_body(person_at: Callable[..., Any]) -> None:
     assert person.run("tamp.poses()") == before
 
 
+def test_the_front_is_where_one_looks_from(person_at: Callable[..., Any]) -> None:
+    person, studio = person_at("left_of(a, b)")
+    stand = studio.stage.scene.bodies[next(iter(studio.stage.scene.bodies))]
+    assert "front" in person.run("document.getElementById('names').textContent")
+    yaw = person.run("tamp.camera.yaw")
+    for _ in range(4):  # 96 degrees around
+        person.drag((700, 130), (640, 150))
+    before = person.run("tamp.poses()")
+    person.key("g")
+    person.ready()
+    assert np.cos(person.run("tamp.camera.yaw") - yaw - np.pi / 2) == pytest.approx(1.0)
+    assert person.run("tamp.poses()") == before
+    assert studio.stage.scene.bodies[stand.name].front == pytest.approx(np.pi / 2)
+    assert person.browser.logged == []
+
+
 def test_labels_cards_and_what_is_asked_first(
     person_at: Callable[..., Any], tmp_path: Path
 ) -> None:

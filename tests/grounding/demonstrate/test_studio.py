@@ -87,8 +87,8 @@ def test_the_state_is_json_and_whole(studio_of: Maker) -> None:
 def test_another_relation_has_a_folder_of_its_own(
     tmp_path: Path, workbench, runner, monkeypatch
 ) -> None:
+    from grounding.demonstrate.folder import Source
     from grounding.demonstrate.relation import parse_relation
-    from grounding.demonstrate.studio import Source
 
     monkeypatch.chdir(tmp_path)
     studio = Studio(parse_relation("stack(a, b)"), Source(), workbench, runner)
@@ -111,6 +111,25 @@ def test_a_folder_that_was_named_is_for_one_relation(studio_of: Maker) -> None:
     studio.act("label", about(studio, holds=False, anyway=True))
     with pytest.raises(InputError, match="has demonstrations of near"):
         studio.act("relation", {"text": "stack(a, b)"})
+
+
+def test_the_front_is_kept_in_what_is_labelled(studio_of: Maker) -> None:
+    studio = studio_of("left_of(a, b)")
+    name = studio.stage.arguments[0]
+    table = studio.stage.scene.bodies[next(iter(studio.stage.scene.bodies))]
+    moved = {name: Pose((table.pose.position[0], table.pose.position[1], 1.8))}
+    said = studio.act("front", about(studio, moved, yaw=table.pose.yaw + 0.2))  # its +x side
+    assert said["stage"]["number"] == 1
+    eye = said["stage"]["view"]["yaw"]
+    assert np.cos(eye - table.pose.yaw) == pytest.approx(1.0)
+    studio.act("label", about(studio, moved, holds=False, anyway=True))
+    (found,) = demonstrations_of("left_of", [studio.folder.path])
+    assert found.scene.bodies[table.name].front == pytest.approx(np.pi / 2)
+    assert found.scene.bodies[name].pose.position == pytest.approx(moved[name].position)
+
+    for bad in (None, "left", True, float("nan"), float("inf")):
+        with pytest.raises(InputError, match="'yaw' is no finite number"):
+            studio.act("front", about(studio, yaw=bad))
 
 
 def test_arguments_are_chosen_among_what_is_there(studio_of: Maker, root: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate
-from grounding.oracles import ItemOf, Verdict, paper_oracle, settled
+from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle
 from grounding.paper.blind import BlindModel, CornerModel, blind_ceiling
 from grounding.paper.features import BoxFeatures, CloudFeatures, completed, poses_of
 from grounding.paper.oracle import in_place, own_box, published_oracle
@@ -31,7 +31,7 @@ def test_labels_are_what_physics_says_and_kinds_have_their_shares(data: Dataset)
     with open_drops() as drops:
         for example in data:
             pose = example.situation.body.matrix[None]
-            holds = settled(example.situation, pose, drops, items)[0] is Verdict.HOLDS
+            holds = drop_verdicts(example.situation, pose, drops, items)[0] is Verdict.HOLDS
             assert holds == example.holds == (example.kind in POSITIVE), example.kind
     assert data.card["layout"] == "paper"
     assert set(data.kinds) == set(KINDS[data.relation])

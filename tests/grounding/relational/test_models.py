@@ -12,7 +12,7 @@ import torch
 
 from grounding.dataset import Dataset
 from grounding.layers import dense, layers_of
-from grounding.oracles import ItemOf, Verdict, settled
+from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
 from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.flow import COORDINATES, Flow, condition, surroundings
@@ -63,7 +63,8 @@ def test_what_is_proposed_holds_in_physics(
             situation = scenes[relation][index].situation
             poses = grounding.propose(situation, 1, rng)
             held.append(
-                len(poses) == 1 and settled(situation, poses, drops, items)[0] is Verdict.HOLDS
+                len(poses) == 1
+                and drop_verdicts(situation, poses, drops, items)[0] is Verdict.HOLDS
             )
     assert np.mean(held) > 0.6
 

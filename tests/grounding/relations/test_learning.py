@@ -7,19 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.relations.geometry import pick, situations, trouble
+from benchmarks.relations.geometry import local, pick, situations, trouble
 from benchmarks.relations.hand import put, scenes, shown
 from benchmarks.relations.measure import Case, accuracy, holding, measured, steady
 from benchmarks.relations.relations import RELATIONS
 from grounding.relations.asking import questions
+from grounding.relations.charts import MODES
 from grounding.relations.committee import fit
-from grounding.relations.demonstration_file import Demonstration, demonstrations_of
+from grounding.relations.demonstration_file import Demonstration, Label, demonstrations_of
+from grounding.relations.demonstration_text import BodyEntry, DemonstrationFile, write_demonstration
 from grounding.relations.evidence import gather
+from grounding.relations.generator import learned
 from grounding.relations.learner import learn, trained
-from grounding.relations.situation import joined, situation_of
+from grounding.relations.situation import Situations, joined, situation_of
 from grounding.relations.variety import missing, unvaried
 from grounding.relations.words import explanations
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Array, Pose
 from tests.grounding.relations.shown import write_demos
 
 
@@ -161,3 +165,83 @@ def test_questions_are_about_what_is_disputed() -> None:
     assert len({*rows.tolist()}) == 5
     doubt = 1 - np.abs(2 * committee.predict(pool) - 1)
     assert doubt[rows].mean() > doubt.mean()
+
+
+def test_a_relation_of_distances_among_three_is_told_as_one() -> None:
+    """Farther from one than another is: no distance by itself says so."""
+    rng = np.random.default_rng(2)
+    every = joined([situations(scenes("between", 200, rng)) for _ in range(2)])
+    apart = np.linalg.norm(np.diff(every.p[:, [0, 1, 2], :2], axis=1), axis=2)
+    holds = apart[:, 0] > apart[:, 1]
+    rows = np.concatenate([np.flatnonzero(holds)[:15], np.flatnonzero(~holds)[:15]])
+    committee, _ = trained(every.rows(rows), holds[rows], rng)
+    rest = np.setdiff1d(np.arange(len(every)), rows)
+    said = committee.predict(every.rows(rest)) >= 0.5
+    assert len(rest) > 100 and (said == holds[rest]).mean() > 0.9
+    assert any("farther from" in text for text in explanations(committee, ("a", "b", "c")))
+
+
+class Pleased:
+    """A committee to which everything holds."""
+
+    def predict(self, situations: Situations) -> Array:
+        return np.ones(len(situations))
+
+
+def test_a_chart_that_carries_bodies_into_each_other_is_not_chosen() -> None:
+    """Beside another one there is no room in it: shares of that agree, and are of no use."""
+    s = situations(shown("next_to", 12, True, np.random.default_rng(0)))
+    s.p[:, 0, :2] = s.p[:, 1, :2] + [0.3, 0.0]
+    chosen = learned(Pleased(), s, np.random.default_rng(0))  # type: ignore[arg-type]
+    modes = [MODES[code] for code in chosen.shown.codes[:, 2]]
+    assert len(modes) == 5 and "room" not in modes
+
+
+def test_what_was_always_in_one_place_of_the_furniture_is_warned_of() -> None:
+    rng = np.random.default_rng(1)
+    s = situations(shown("next_to", 10, True, rng))
+    keys = [key for key, _ in unvaried(s, np.ones(10, dtype=bool), ("a", "b"))]
+    assert "place of 1" not in keys
+    s.p[:, 1, :2] = s.support[:, 2:4]
+    found = dict(unvaried(s, np.ones(10, dtype=bool), ("a", "b")))
+    assert found["place of 1"].startswith("b was always in the same place of the furniture")
+
+
+def test_a_capsule_that_stands_is_no_body_that_leans(tmp_path: Path) -> None:
+    """It has no face on which it stands, and a box in its place is put down on one of its own."""
+    for number in range(6):
+        capsule = {"capsule": {"radius": 0.03, "height": 0.1 + 0.01 * number}}
+        bodies = {
+            "table": BodyEntry(
+                {"furniture": "table", "size": [1.2, 0.8, 0.5]},
+                Pose.from_xyz_yaw(0.0, 0.0, 0.0, 0.0),
+            ),
+            "post": BodyEntry(capsule, Pose.from_xyz_yaw(0.1 * number, 0.0, 0.6, number)),
+        }
+        label = Label("standing", ("post",), True)
+        write_demonstration(tmp_path / f"{number}.yaml", DemonstrationFile(bodies, [label]))
+    demos = list(demonstrations_of("standing", [tmp_path]))
+    assert learn("standing", demos, np.random.default_rng(0)).generator.steady
+
+
+@pytest.mark.parametrize(
+    ("what", "said"),
+    [("middle", "distance from the furniture's middle"), ("corner", "corner of the furniture")],
+)
+def test_a_place_on_the_furniture_is_told_by_its_middle_and_its_corners(
+    what: str, said: str
+) -> None:
+    """In the middle of a table, or at any corner of it: neither side's edge by itself says so."""
+    rng = np.random.default_rng(4)
+    batch = scenes("upright", 3000, rng)
+    at, half = np.abs(local(batch, 0)), batch["half"]
+    holds = np.hypot(*at.T) < 0.2 if what == "middle" else (half - at).max(axis=1) < 0.2
+    every = situations(batch)
+    rows = np.concatenate([np.flatnonzero(holds)[:12], np.flatnonzero(~holds)[:12]])
+    committee, _ = trained(every.rows(rows), holds[rows], rng)
+
+    rest = np.setdiff1d(np.arange(len(every)), rows)
+    yes, truth = committee.predict(every.rows(rest)) >= 0.5, holds[rest]
+    assert truth.sum() > 20
+    assert (yes[truth].mean() + 1 - yes[~truth].mean()) / 2 > 0.85
+    assert any(said in text for text in explanations(committee, ("a",)))

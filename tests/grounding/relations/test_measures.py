@@ -52,6 +52,10 @@ def test_measures_say_what_their_names_say(tmp_path) -> None:
         "furniture: left edge": 0.6 - 0.2 - 0.04,
         "furniture: front edge": 0.35 + 0.1 - 0.04,
         "furniture: any edge": 0.35 - 0.1 - 0.04,
+        "furniture: end": 0.6 - 0.2 - 0.04,
+        "furniture: long edge": 0.35 - 0.1 - 0.04,
+        "furniture: corner": 0.6 - 0.2 - 0.04,
+        "furniture: middle": math.hypot(0.2, 0.1),
     }
     assert {key: found[key] for key in expected} == pytest.approx(expected, abs=2e-3)
 
@@ -63,6 +67,8 @@ def test_a_line_is_measured_between_the_other_two(tmp_path) -> None:
         "line: beside": 0.0,
         "line: angle": math.pi,
         "line: beyond 2": -0.3,
+        "nearer: 1": 0.0,
+        "farther: 1": 0.3 - 0.6,
     }
     assert {key: found[key] for key in expected} == pytest.approx(expected, abs=2e-3)
 

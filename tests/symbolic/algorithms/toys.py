@@ -17,6 +17,7 @@ from tamp.symbolic.pddl.parser import (
     parse_goal,
     parse_streams,
 )
+from tamp.symbolic.pddl.relations import SAMPLE
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Alarm
@@ -42,7 +43,10 @@ def stream_task(
         types = output_types(stream, parsed)
         bound.append(
             BoundStream(
-                stream, functions[stream.name], tuple(types[name] for name in stream.outputs)
+                stream,
+                functions[stream.name],
+                tuple(types[name] for name in stream.outputs),
+                advises=stream.name.startswith(SAMPLE),
             )
         )
     task = Task(

@@ -13,9 +13,9 @@ from tamp.symbolic.pddl.complement import (
     negated_tests,
     with_complements,
 )
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.structs import And, Atom, Domain, Fact, Forall, Formula, Not, Parameter
-from tamp.verification.formulas import show
 from tamp.verification.semantics import Semantics, State
 
 DOMAIN = parse_domain("""(define (domain d) (:requirements :adl)
@@ -54,7 +54,7 @@ def test_nothing_is_rewritten_where_nothing_is_decided() -> None:
 
 def test_decided_predicates_are_needed_to_hold_only() -> None:
     domain, goal = with_complements(DOMAIN, GOAL, ("free",))
-    assert show(goal) == "(and (done) (not-free cup))"
+    assert to_text(goal) == "(and (done) (not-free cup))"
     # Effects' conditions are read both ways: what they ask is known before, see below.
     plain = replace(domain, actions=tuple(replace(one, effects=()) for one in domain.actions))
     found = signs(goal, plain)
@@ -75,7 +75,7 @@ def test_an_effects_condition_has_to_be_known_before() -> None:
     (action,) = (one for one in domain.actions if one.name == "test")
     (known,) = [part for part in [action.precondition, *getattr(action.precondition, "parts", ())]
                 if isinstance(part, Forall)]  # fmt: skip
-    assert show(known.body) == "(or (free ?a) (not-free ?a))"
+    assert to_text(known.body) == "(or (free ?a) (not-free ?a))"
 
 
 @pytest.mark.parametrize("free", [(), ("cup",), ("box",), ("cup", "box")])

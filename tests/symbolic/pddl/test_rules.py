@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tamp.errors import InputError
+from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.parser import parse_domain
 from tamp.symbolic.pddl.rules import parse_rule, redefinition, rule_head
 from tamp.symbolic.pddl.sections import Section, read_sections
 from tamp.symbolic.pddl.structs import Derived
-from tamp.verification.formulas import show
 
 DOMAIN = parse_domain("""(define (domain d) (:requirements :typing) (:types cup plate - body body - object)
   (:predicates (on ?a - body ?b - plate) (clean ?a - body) (high ?a - body) (ready)))""")
@@ -56,7 +56,7 @@ def checked(rule: str) -> None:
 )
 def test_rules_in_any_spelling(rule: str, head: str, types: list, body: str) -> None:
     found = parsed(rule)
-    assert (show(found.head), show(found.body)) == (head, body)
+    assert (to_text(found.head), to_text(found.body)) == (head, body)
     assert [parameter.types for parameter in found.parameters] == types
     assert rule_head(section(rule), DOMAIN) == found.head.predicate
     assert found.place is not None and found.place.column == 20
@@ -67,9 +67,9 @@ def test_a_variable_twice_in_the_head_is_one() -> None:
     first, second = found.head.terms
     assert (
         first != second
-        and "(=" in show(found.body)
-        and first in show(found.body)
-        and second in show(found.body)
+        and "(=" in to_text(found.body)
+        and first in to_text(found.body)
+        and second in to_text(found.body)
     )
 
 

@@ -11,8 +11,8 @@ from tamp.symbolic.pddl.nodes import Symbol
 from tamp.symbolic.pddl.sexpr import read
 from tamp.symbolic.pddl.structs import Parameter
 from tamp.symbolic.pddl.typed import (
+    declared_types,
     distinct,
-    known_types,
     parameters,
     placeholders,
     refuse_duplicates,
@@ -65,7 +65,7 @@ def test_what_is_no_typed_list_is_refused_at_its_place(text: str, words: str, co
     assert (told.value.line, told.value.column) == (1, column)
 
 
-def test_parameters_are_variables_of_known_types() -> None:
+def test_parameters_are_variables_of_declared_types() -> None:
     assert parameters(read("?a ?b - body ?c"), TYPES) == (
         Parameter("?a", ("body",)),
         Parameter("?b", ("body",)),
@@ -110,8 +110,8 @@ def test_a_declaration_may_name_two_parameters_alike() -> None:
 
 def test_types_are_checked_and_each_counts_once() -> None:
     symbols = [node for node in read("pose body pose") if isinstance(node, Symbol)]
-    assert known_types(symbols, TYPES) == ("pose", "body")
-    assert known_types((), TYPES) == ()
+    assert declared_types(symbols, TYPES) == ("pose", "body")
+    assert declared_types((), TYPES) == ()
 
 
 def test_the_second_of_two_equal_names_is_refused_with_the_line_of_the_first() -> None:

@@ -89,6 +89,14 @@ def test_the_fewest_are_named(balls: int) -> None:
     assert told("(and (at b0 den) (not (at b0 den)))", balls) == {"at b0 den", "not at b0 den"}
 
 
+@pytest.mark.parametrize("balls", [2, 7, 20])
+def test_a_choice_of_which_each_way_is_excluded_by_another_goal_is_no_choice(balls: int) -> None:
+    """No pair of goals excludes it: each ball's own place excludes that ball alone."""
+    everywhere = "(forall (?b - ball) (or (at ?b den) (at ?b hall)))"
+    assert told(f"(and {everywhere} (exists (?b - ball) (at ?b loft)))", balls) == {"goal 2"}
+    assert told(f"(and {everywhere} (exists (?b - ball) (at ?b den)))", balls) is None
+
+
 def test_what_can_be_had_together_is_not_named() -> None:
     assert told("(and (forall (?b - ball) (at ?b den)) (free))", 5) is None
     assert told("(and (carried b0) (not (at b1 hall)) (not (free)))", 5) is None

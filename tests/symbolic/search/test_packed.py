@@ -199,10 +199,6 @@ def test_only_what_was_made_of_these_sources_counts_as_compiled(
     assert not selection.compiled_before()
 
 
-def test_luby_numbers() -> None:
-    assert [restarts.luby(k) for k in range(1, 16)] == [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]
-
-
 @pytest.mark.parametrize("heuristic", ["ff+landmarks", "ff"])
 def test_a_search_that_stalls_begins_anew_and_finds_a_plan(
     heuristic: str, monkeypatch: pytest.MonkeyPatch

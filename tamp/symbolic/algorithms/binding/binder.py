@@ -66,8 +66,8 @@ class Binder:
             levels.enter(index, level)
             return level
 
-        def standing(index: int) -> Level:
-            level = levels.standing(index)
+        def level_at(index: int) -> Level:
+            level = levels.valid_level(index)
             if level is None:
                 level = enter(index)
                 next(level.candidates)  # the value that it has
@@ -84,7 +84,7 @@ class Binder:
                 if refusals > REFUSALS or not nodes:
                     return None
                 index = len(nodes) - 1
-                level = standing(index)
+                level = level_at(index)
                 level.conflict.update(range(index))  # any of them may be to blame
 
             while (outputs := next(level.candidates, None)) is None:
@@ -101,7 +101,7 @@ class Binder:
 
                 target = max(conflict)
                 levels.jump(index, target)
-                index, level = target, standing(target)
+                index, level = target, level_at(target)
                 level.culprits |= conflict
                 if self._deadline.passed:
                     raise OutOfTime

@@ -52,7 +52,7 @@ class Levels:
         self._levels[index] = level
         self._entered[index] = self._clock
 
-    def standing(self, index: int) -> Level | None:
+    def valid_level(self, index: int) -> Level | None:
         """Return a level; None where a jump has reset it, so that it has to begin anew."""
         place = bisect_left(self._targets, index) - 1
         reset = self._jumps[place] if place >= 0 else 0

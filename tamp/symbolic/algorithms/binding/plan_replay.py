@@ -86,13 +86,13 @@ class PlanReplay:
             if reason is not None:
                 return Fault(reason, False)
 
-        known = (
+        needed = (
             {substitute(fact, values) for fact in skeleton.certified}
             - given.of_states
             - self._task.initial
         )
-        facts = known & self._streams.certain
-        for fact in sorted(known - facts):
+        facts = needed & self._streams.certain
+        for fact in sorted(needed - facts):
             if fact not in self._streams.wild:
                 return Fault(f"({' '.join(fact)}) was not certified", False)
             facts.add(fact)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -99,6 +100,31 @@ class Skeleton:
     memory: dict[int, tuple[tuple[object, ...], tuple[str, ...]]] = field(
         default_factory=dict[int, tuple[tuple[object, ...], tuple[str, ...]]]
     )
+
+    def recall(self, earlier: Skeleton) -> None:
+        """Take over the values that another skeleton had last, where a call means the same here.
+
+        Each is tried first where its inputs are those that it was drawn for.
+        """
+        known = earlier.calls
+        for call, place in self.calls.items():
+            value = earlier.memory.get(known.get(call, -1))
+            if value is not None:
+                self.memory.setdefault(place, value)
+
+    @cached_property
+    def calls(self) -> dict[tuple[object, ...], int]:
+        """Return the place of each call by its stream and what it means in the optimistic task.
+
+        Those that look alike are counted.
+        """
+        counts: Counter[tuple[object, ...]] = Counter()
+        places: dict[tuple[object, ...], int] = {}
+        for place, node in enumerate(self.nodes):
+            call = (node.stream.name, node.guess)
+            places[*call, counts[call]] = place
+            counts[call] += 1
+        return places
 
     @property
     def signature(self) -> tuple[tuple[str, tuple[str, ...]], ...]:

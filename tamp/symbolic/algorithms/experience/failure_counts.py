@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
-from tamp.symbolic.algorithms.bound_stream import ADVISORY
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.pddl.relations import SAMPLE
 from tamp.symbolic.pddl.structs import Fact
 
 MAX_SKELETONS = 100
@@ -144,7 +144,7 @@ def _label(
         if user == number and not set(node.guess[1]).isdisjoint(step.arguments):
             further = [thing for thing in _things(node.guess[0], names) if thing not in things]
             if further:
-                relation = node.stream.name.removeprefix(ADVISORY)
+                relation = node.stream.name.removeprefix(SAMPLE)
                 text += (
                     f" {relation} {' '.join(further)}"
                     if relation != node.stream.name

@@ -74,13 +74,13 @@ def _searched(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[tuple
     kept = [part.literal for part in goal_parts(instantiated)]
     # the parts say more than the whole
     for literal in sorted(kept, key=lambda one: one[0][0] not in instantiated.meanings):
-        rest = [other for other in kept if other != literal]
-        if not rest or deadline.passed:
+        others = [other for other in kept if other != literal]
+        if not others or deadline.passed:
             break
-        left = replace(instantiated, goal=_goal(instantiated.goal, rest))
+        left = replace(instantiated, goal=_goal(instantiated.goal, others))
         found = search(left, search="greedy", limit=MAX_STATES, deadline=deadline)
         if found.reason is Reason.UNSOLVABLE:
-            kept = rest
+            kept = others
     return tuple(kept)
 
 

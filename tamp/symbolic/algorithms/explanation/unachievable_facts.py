@@ -50,9 +50,9 @@ class UnachievableFacts:
     ) -> None:
         self._task, self._streams, self._types = task, streams, types
         self._assumed = frozenset(assumed)
-        self._known = frozenset(facts)
+        self._facts = frozenset(facts)
         self._by_predicate: dict[str, list[Fact]] = defaultdict(list)
-        for fact in sorted(self._known):
+        for fact in sorted(self._facts):
             self._by_predicate[fact[0]].append(fact)
         self._examined = 0
 
@@ -146,10 +146,10 @@ class UnachievableFacts:
             conditions,
             key=lambda one: sum(term not in binding for term in one.terms if term[:1] == "?"),
         )
-        rest = [one for one in conditions if one is not atom]
+        others = [one for one in conditions if one is not atom]
         best: list[Atom] | None = None
         if atom.predicate in self._assumed or atom.predicate == "=":
-            return self._missing_preconditions(rest, binding, types, fewer)
+            return self._missing_preconditions(others, binding, types, fewer)
 
         for fact in self._by_predicate[atom.predicate]:
             self._examined += 1
@@ -158,14 +158,14 @@ class UnachievableFacts:
             grown = self._matched(atom, fact, binding, types)
             if grown is None:
                 continue
-            found = self._missing_preconditions(rest, grown, types, fewer)
+            found = self._missing_preconditions(others, grown, types, fewer)
             if found is not None and len(found) < fewer:
                 best, fewer = found, len(found)
             if best == [] or grown == binding:
                 return best
 
         if fewer > 1:
-            found = self._missing_preconditions(rest, binding, types, fewer - 1)
+            found = self._missing_preconditions(others, binding, types, fewer - 1)
             if found is not None and len(found) + 1 < fewer:
                 best = [
                     Atom(atom.predicate, tuple(binding.get(term, term) for term in atom.terms)),

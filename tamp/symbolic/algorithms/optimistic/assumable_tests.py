@@ -75,7 +75,7 @@ def _looked_up(
     """
     stream, fact = test
     types = {"object", *task.domain.types}
-    given = {known[0] for known in task.initial}
+    given = {fact_[0] for fact_ in task.initial}
     changing = task.domain.fluent_predicates | {rule.head.predicate for rule in task.domain.derived}
     found: dict[tuple[str, tuple[int, ...]], None] = {}
     pending = list(stream.declaration.domain)

@@ -28,11 +28,11 @@ class FactIndex:
             return
         candidates = [self._candidates(atom, binding) for atom in atoms]
         first = min(range(len(atoms)), key=lambda i: len(candidates[i]))
-        rest = (*atoms[:first], *atoms[first + 1 :])
+        others = (*atoms[:first], *atoms[first + 1 :])
         for fact in list(candidates[first]):
             extended = unify(atoms[first], fact, binding)
             if extended is not None:
-                yield from self.join(rest, extended)
+                yield from self.join(others, extended)
 
     def _candidates(self, atom: Atom, binding: Mapping[str, str]) -> Sequence[Fact]:
         best: Sequence[Fact] = self._by_predicate.get(atom.predicate, ())

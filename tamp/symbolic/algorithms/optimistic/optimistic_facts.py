@@ -71,6 +71,7 @@ class OptimisticFacts:
             its stream and the atom that it certifies.
         complete: Whether nothing was left out for being deep or one too many: what is not here
             cannot become true.
+        crowded: Whether deeper ones were left out for there being so many, whatever their depth.
     """
 
     producers: dict[Fact, OptimisticInstance] = field(
@@ -85,6 +86,7 @@ class OptimisticFacts:
         default_factory=dict[str, tuple[BoundStream, Atom]]
     )
     complete: bool = True
+    crowded: bool = False
 
     def producer(self, fact: Fact) -> OptimisticInstance | None:
         """Return the call that certifies a fact; a lazy test's is made up when asked for."""

@@ -163,7 +163,9 @@ class _Instantiation:
         made = OptimisticInstance(stream, inputs, call.outputs, domain, call.certified, depth)
         self.made.instances.append(made)
         if len(self.made.instances) >= self._max_instances:
-            self._generator_depth = max(1, min(self._generator_depth, depth - 1))
+            fewer = max(1, min(self._generator_depth, depth - 1))
+            self.made.crowded |= fewer < self._generator_depth
+            self._generator_depth = fewer
         self._certify(made)
 
     def _named(

@@ -39,10 +39,14 @@ def optimistic_task(task: PlanningTask, knowledge: Knowledge) -> OptimisticTask:
     """Instantiate the optimistic task without the calls that are known to have ended.
 
     Where instances have to be left out, those that are not deeper than a first plan asks for are
-    all that is kept: the knowledge's depth limit is set, and raised until the goal is reachable.
+    all that is kept: the knowledge's depth limit is set, and raised until the goal is reachable, or
+    until it is their number that keeps them shallow.
     """
     made = _over_certified(task, knowledge)
     while _is_limited(knowledge) and not made.goal_is_reachable:
+        if made.facts.crowded:
+            knowledge.depth_limit = MAX_DEPTH * knowledge.depth_factor
+            break
         knowledge.depth_limit = (knowledge.depth_limit or 0) + 1
         made = _over_certified(task, knowledge)
     return made

@@ -56,9 +56,9 @@ class Landmarks:
                 for effect in effects[i]:
                     if effect in start:
                         continue
-                    known = sets[effect]
-                    new = (union & known if known else union) | 1 << effect
-                    if new != known:
+                    found = sets[effect]
+                    new = (union & found if found else union) | 1 << effect
+                    if new != found:
                         sets[effect] = new
                         waiting.update(dict.fromkeys(needed[effect]))
         self.possible = all(sets[goal] for goal in relaxation.goals)
@@ -84,9 +84,9 @@ class Landmarks:
         """
         now = self._holding(closed)
         reached = (self._reached.get(parent, 0) if parent is not None else 0) | now
-        known = self._reached.get(closed)
-        if known is not None:
-            reached &= known | now
+        before = self._reached.get(closed)
+        if before is not None:
+            reached &= before | now
         self._reached[closed] = reached
         missing = self._all & ~reached
         again = self.goals

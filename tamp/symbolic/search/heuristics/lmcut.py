@@ -72,7 +72,7 @@ class LandmarkCuts:
 
     def __init__(self, relaxation: Relaxation) -> None:
         self._relaxation = relaxation
-        self._known: dict[State, LandmarkCut] = {}
+        self._cuts: dict[State, LandmarkCut] = {}
 
     def value(self, closed: State) -> float:
         """Estimate the cost from a state with its derived facts."""
@@ -80,9 +80,9 @@ class LandmarkCuts:
             self._relaxation.relaxed_state(closed, EXPECTED_CUTS),
             self._relaxation.key(closed),
         )
-        known = self._known.get(key)
-        if known is None or known.relaxed_state.kernels is not relaxed_state.kernels:
-            if len(self._known) >= MAX_RELAXED_STATES:
-                self._known.clear()
-            known = self._known[key] = LandmarkCut(self._relaxation, relaxed_state)
-        return known.value(closed)
+        cached = self._cuts.get(key)
+        if cached is None or cached.relaxed_state.kernels is not relaxed_state.kernels:
+            if len(self._cuts) >= MAX_RELAXED_STATES:
+                self._cuts.clear()
+            cached = self._cuts[key] = LandmarkCut(self._relaxation, relaxed_state)
+        return cached.value(closed)

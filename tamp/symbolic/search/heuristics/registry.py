@@ -107,13 +107,13 @@ def landmarks(successors: Successors) -> Heuristic:
     """Estimate by the cost of the landmarks that were not true on the way to the state, or are
     needed again.
     """
-    known = Landmarks(successors)
+    marks = Landmarks(successors)
 
     def estimate(closed: State, parent: State | None = None) -> Estimate:
-        if not known.possible:
+        if not marks.possible:
             return Estimate(math.inf)
-        remaining = known.remaining(closed, parent)
-        return Estimate(known.cost(remaining))
+        remaining = marks.remaining(closed, parent)
+        return Estimate(marks.cost(remaining))
 
     return estimate
 

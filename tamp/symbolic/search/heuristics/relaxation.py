@@ -154,12 +154,12 @@ class Relaxation:
         if kernels is not self._base.kernels:
             self._prepare(kernels)
         key = self.key(state)
-        known = self._relaxed_states.get(key)
-        if known is None:
+        cached = self._relaxed_states.get(key)
+        if cached is None:
             if len(self._relaxed_states) >= MAX_RELAXED_STATES:
                 self._relaxed_states.clear()
-            known = self._relaxed_states[key] = self._relax(key)
-        return known
+            cached = self._relaxed_states[key] = self._relax(key)
+        return cached
 
     def _relax(self, state: State) -> RelaxedState:
         """Build the relaxed task in which the state's triggered guards are paid for, or waited for.

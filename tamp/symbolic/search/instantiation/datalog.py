@@ -75,11 +75,11 @@ class Relations:
 
     def add(self, predicate: str, rows: Iterable[Row]) -> list[Row]:
         """Add rows, return the new ones."""
-        known = self.rows(predicate)
+        present = self.rows(predicate)
         new: list[Row] = []
         for row in rows:
-            if row not in known:
-                known[row] = None
+            if row not in present:
+                present[row] = None
                 new.append(row)
         if new:
             for index in self._indexes.get(predicate, {}).values():
@@ -114,12 +114,12 @@ class Relations:
             found.add(self.rows(atom.predicate))
         return found.table
 
-    def fan_out(self, atom: Atom, known: Iterable[str]) -> float:
+    def fan_out(self, atom: Atom, bound: Iterable[str]) -> float:
         """Estimate how many rows an atom adds to each binding of the known variables."""
         rows = self.rows(atom.predicate)
         distinct = 1
         for position, term in enumerate(atom.terms):
-            if not term.startswith("?") or term in known:
+            if not term.startswith("?") or term in bound:
                 distinct = max(distinct, self._count(atom.predicate, position))
         return len(rows) / distinct
 
@@ -153,23 +153,23 @@ def join(
             return []
     negative = list(body.negative)
     equalities = list(body.equalities)
-    known = {variable: i for i, variable in enumerate(variables)}
+    positions = {variable: i for i, variable in enumerate(variables)}
 
     while rows:
-        rows = _filter(relations, known, negative, equalities, rows)
+        rows = _filter(relations, positions, negative, equalities, rows)
         if not atoms:
             break
-        bound_whole = (a for a in atoms if known.keys() >= _variables(a))
-        atom = next(bound_whole, None) or min(atoms, key=lambda a: relations.fan_out(a, known))
+        bound_whole = (a for a in atoms if positions.keys() >= _variables(a))
+        atom = next(bound_whole, None) or min(atoms, key=lambda a: relations.fan_out(a, positions))
         atoms.remove(atom)
         bound: list[int] = []
         free: list[int] = []
         columns: list[int] = []
         fresh: list[str] = []
         for position, term in enumerate(atom.terms):
-            if term in known:
+            if term in positions:
                 bound.append(position)
-                columns.append(known[term])
+                columns.append(positions[term])
             elif term.startswith("?") and term not in fresh:
                 free.append(position)
                 fresh.append(term)
@@ -187,11 +187,11 @@ def join(
             else:
                 rows = [row for row in rows if key(row) in table]
         for term in fresh:
-            known[term] = len(known)
+            positions[term] = len(positions)
 
     if not rows:
         return []
-    return list(map(getter([known[variable] for variable in order]), rows))
+    return list(map(getter([positions[variable] for variable in order]), rows))
 
 
 def _variables(atom: Atom) -> set[str]:
@@ -200,7 +200,7 @@ def _variables(atom: Atom) -> set[str]:
 
 def _filter(
     relations: Relations,
-    known: dict[str, int],
+    positions: dict[str, int],
     negative: list[Atom],
     equalities: list[tuple[str, str, bool]],
     rows: list[Row],
@@ -210,31 +210,31 @@ def _filter(
     """
     for equality in equalities[:]:
         left, right, same = equality
-        if all(not term.startswith("?") or term in known for term in (left, right)):
+        if all(not term.startswith("?") or term in positions for term in (left, right)):
             equalities.remove(equality)
-            a, b = known.get(left), known.get(right)
+            a, b = positions.get(left), positions.get(right)
             rows = [
                 row for row in rows
                 if ((left if a is None else row[a]) == (right if b is None else row[b])) is same
             ]  # fmt: skip
     for atom in negative[:]:
-        if known.keys() >= _variables(atom):
+        if positions.keys() >= _variables(atom):
             negative.remove(atom)
             present = relations.rows(atom.predicate)
-            fill = filler(atom.terms, known)
+            fill = filler(atom.terms, positions)
             rows = [row for row in rows if fill(row) not in present]
     return rows
 
 
-def filler(terms: Sequence[str], known: dict[str, int]) -> Callable[[Row], Row]:
+def filler(terms: Sequence[str], positions: dict[str, int]) -> Callable[[Row], Row]:
     """Build a function from a binding to the terms with variables replaced."""
-    constants = tuple(term for term in terms if term not in known)
+    constants = tuple(term for term in terms if term not in positions)
     if not constants:
-        return getter([known[term] for term in terms])
+        return getter([positions[term] for term in terms])
     # Constants are appended to the row, so that one itemgetter call fills in everything.
-    width = len(known)
+    width = len(positions)
     places = {term: width + i for i, term in enumerate(constants)}
-    pick = getter([known[term] if term in known else places[term] for term in terms])
+    pick = getter([positions[term] if term in positions else places[term] for term in terms])
     return lambda row: pick(row + constants)
 
 
@@ -273,10 +273,10 @@ def fixpoint(
                     new.append(row)
             if not new:
                 continue
-            known = {variable: i for i, variable in enumerate(rule.variables)}
+            positions = {variable: i for i, variable in enumerate(rule.variables)}
             for head in rule.heads:
                 derived.setdefault(head.predicate, {}).update(
-                    dict.fromkeys(map(filler(head.terms, known), new))
+                    dict.fromkeys(map(filler(head.terms, positions), new))
                 )
         added = {predicate: relations.add(predicate, rows) for predicate, rows in derived.items()}
         delta = {predicate: rows for predicate, rows in added.items() if rows}
@@ -295,6 +295,6 @@ def _triggered(
         fresh.add(atom.predicate, delta[atom.predicate])
         variables = tuple(dict.fromkeys(term for term in atom.terms if term.startswith("?")))
         start = join(fresh, Body((atom,)), (), [()], variables)
-        rest = rule.body.positive[:position] + rule.body.positive[position + 1 :]
-        body = Body(rest, rule.body.negative, rule.body.equalities)
+        others = rule.body.positive[:position] + rule.body.positive[position + 1 :]
+        body = Body(others, rule.body.negative, rule.body.equalities)
         yield from join(relations, body, variables, start, rule.variables)

@@ -67,7 +67,7 @@ class Effects:
         need: Callable[[Fact], None],
     ) -> None:
         self._predicates, self._negation, self._need = predicates, negation, need
-        self._known = {name: i for i, name in enumerate(variables)}
+        self._columns = {name: i for i, name in enumerate(variables)}
         relations = predicates.relations
         self._adds: list[Callable[[Row], Fact]] = []
         self._deletes: list[tuple[str, Callable[[Row], Row], Callable[[Row], Fact]]] = []
@@ -76,11 +76,11 @@ class Effects:
         self._rows = relations.rows
         for effect in effects:
             atom = effect.atom
-            fact = filler((atom.predicate, *atom.terms), self._known) if effect.simple else None
+            fact = filler((atom.predicate, *atom.terms), self._columns) if effect.simple else None
             if fact is not None and effect.adds:
                 self._adds.append(fact)
             elif fact is not None:
-                self._deletes.append((atom.predicate, filler(atom.terms, self._known), fact))
+                self._deletes.append((atom.predicate, filler(atom.terms, self._columns), fact))
             else:
                 for condition in effect.conditions:
                     self._expand(effect, condition, rows)
@@ -91,14 +91,14 @@ class Effects:
         """
         shared, names, found = self._join(effect, condition, rows)
         own = names[len(shared) :]
-        key = getter([self._known[name] for name in shared])
-        known = {name: i for i, name in enumerate(names)}
+        key = getter([self._columns[name] for name in shared])
+        columns = {name: i for i, name in enumerate(names)}
         kinds = self._predicates.classify(condition)
         unnamed = [atom for atom in self._predicates.unnamed(condition) if atom.terms[0] in own]
         unnamed = [] if not effect.adds else unnamed
-        fact = filler((effect.atom.predicate, *effect.atom.terms), known)
+        fact = filler((effect.atom.predicate, *effect.atom.terms), columns)
         fills = {
-            kind: [filler((atom.predicate, *atom.terms), known) for atom in atoms]
+            kind: [filler((atom.predicate, *atom.terms), columns) for atom in atoms]
             for kind, atoms in (
                 ("positive", (*kinds.positive, *kinds.derived)),
                 ("negative", kinds.negative),
@@ -148,19 +148,19 @@ class Effects:
             for term in atom.terms
         }
         used |= {term for left, right, _ in condition.equalities for term in (left, right)}
-        shared = tuple(name for name in self._known if name in used)
+        shared = tuple(name for name in self._columns if name in used)
 
         # Types of the action's own parameters have been checked already; only what exists can be
         # deleted.
         atoms = [
             a
             for a in body.positive
-            if not (a.predicate.startswith("type ") and a.terms[0] in self._known)
+            if not (a.predicate.startswith("type ") and a.terms[0] in self._columns)
         ]
         if not effect.adds and effect.atom not in atoms:
             atoms.append(effect.atom)
-        own = tuple(name for name in condition.names if name not in self._known)
-        key = getter([self._known[name] for name in shared])
+        own = tuple(name for name in condition.names if name not in self._columns)
+        key = getter([self._columns[name] for name in shared])
         start = list(dict.fromkeys(map(key, rows)))
 
         names = (*shared, *own)
@@ -191,12 +191,12 @@ class Effects:
         conditional: dict[tuple[Facts, Facts, Facts], tuple[list[Fact], list[Fact]]] = {}
         for number, (adds, key, instances) in enumerate(self._expanded):
             at = key(row)
-            always, rest = self._split(number, at, instances.get(at, []))
+            always, depending = self._split(number, at, instances.get(at, []))
             if adds:
                 added += always
             elif always:
                 universal.append(always)
-            for positive, negative, static, fact in rest:
+            for positive, negative, static, fact in depending:
                 positive -= before
                 if not positive.isdisjoint(negative) or not negative.isdisjoint(before):
                     continue

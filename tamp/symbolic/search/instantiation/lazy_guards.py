@@ -32,10 +32,10 @@ class DerivedGuards:
         kinds = predicates.classify(definition.literals)
         (self._fluent,) = kinds.positive
         (self._absent,) = kinds.absent
-        known = {name: i for i, name in enumerate(self._names)}
-        self._fill_head = filler(self._head.terms, known)
-        self._fill_fluent = filler((self._fluent.predicate, *self._fluent.terms), known)
-        self._fill_absent = filler((self._absent.predicate, *self._absent.terms), known)
+        columns = {name: i for i, name in enumerate(self._names)}
+        self._fill_head = filler(self._head.terms, columns)
+        self._fill_fluent = filler((self._fluent.predicate, *self._fluent.terms), columns)
+        self._fill_absent = filler((self._absent.predicate, *self._absent.terms), columns)
         self._rows = Atom(f"rows of {definition.head.predicate}", self._head.terms)
         self._body = predicates.body(definition.literals, absent=False)
         self._made: dict[Row, tuple[Guard, ...]] = {}

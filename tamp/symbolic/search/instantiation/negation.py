@@ -53,7 +53,7 @@ class Negation:
     def __init__(self, predicates: PredicateKinds, recursive: frozenset[str]) -> None:
         self._predicates = predicates
         self._recursive = recursive
-        self._known: dict[Fact, Needs] = {}
+        self._needs: dict[Fact, Needs] = {}
         self._choices: dict[tuple[tuple[Literal, ...], tuple[Fact, ...]], Fact] = {}
         self._derived_guards: dict[tuple[str, int], DerivedGuards] = {}
         self._singles: dict[Fact, frozenset[Fact]] = {}
@@ -68,9 +68,9 @@ class Negation:
             guards: Whether guards may be used (in operators' preconditions); otherwise they become
                 choices.
         """
-        if fact not in self._known:
+        if fact not in self._needs:
             self.prepare(fact[0], [fact[1:]])
-        needs = self._known[fact]
+        needs = self._needs[fact]
         if guards or not (needs.guards or needs.blocked):
             return needs
         plain = Needs(list(needs.positive), list(needs.negative), impossible=needs.impossible)
@@ -84,18 +84,18 @@ class Negation:
 
     def prepare(self, predicate: str, rows: Iterable[Row]) -> None:
         """Work out the negations of many facts of one predicate in one join."""
-        new = [row for row in dict.fromkeys(rows) if (predicate, *row) not in self._known]
+        new = [row for row in dict.fromkeys(rows) if (predicate, *row) not in self._needs]
         for row in new:
-            self._known[predicate, *row] = Needs()
+            self._needs[predicate, *row] = Needs()
         if predicate in self._recursive and not predicate.startswith("forall "):
             reached = self._predicates.relations.rows(predicate)
             for row in new:
                 if row in reached:
-                    self._known[predicate, *row].negative.append((predicate, *row))
+                    self._needs[predicate, *row].negative.append((predicate, *row))
             return
 
         for fact in sorted(self._predicates.given & {(predicate, *row) for row in new}):
-            self._known[fact].impossible = True
+            self._needs[fact].impossible = True
         for number, definition in enumerate(self._predicates.definitions(predicate)):
             if not DerivedGuards.fits(self._predicates, definition):
                 self._refute_rule(definition, new)
@@ -107,7 +107,7 @@ class Negation:
                 )
             source.add(new)
             for row in new:
-                self._known[predicate, *row].blocked.append((source, row))
+                self._needs[predicate, *row].blocked.append((source, row))
 
     def _refute_rule(self, definition: Definition, rows: list[Row]) -> None:
         literals, head = definition.literals, definition.head
@@ -127,13 +127,13 @@ class Negation:
             )
         )
         body = self._predicates.body(literals, absent=False)
-        known = {name: i for i, name in enumerate(literals.names)}
+        positions = {name: i for i, name in enumerate(literals.names)}
         bindings = join(self._predicates.relations, body, columns, start, literals.names)
-        fill_head = filler((head.predicate, *head.terms), known)
-        fills = [filler((atom.predicate, *atom.terms), known) for atom in kinds.positive]
-        absent = [filler((atom.predicate, *atom.terms), known) for atom in kinds.absent]
+        fill_head = filler((head.predicate, *head.terms), positions)
+        fills = [filler((atom.predicate, *atom.terms), positions) for atom in kinds.positive]
+        absent = [filler((atom.predicate, *atom.terms), positions) for atom in kinds.absent]
         others = [
-            (sign, filler((atom.predicate, *atom.terms), known))
+            (sign, filler((atom.predicate, *atom.terms), positions))
             for sign, atoms in ((False, kinds.derived), (True, (*kinds.negative, *kinds.refuted)))
             for atom in atoms
         ]
@@ -144,7 +144,7 @@ class Negation:
                 waivers = tuple(fact for fact in (fill(row) for fill in absent) if may_hold(fact))
                 if not certain.isdisjoint(waivers):
                     continue
-            needs = self._known[fill_head(row)]
+            needs = self._needs[fill_head(row)]
             facts = [fill(row) for fill in fills]
             if not others and facts:
                 if len(facts) > 1 or waivers:

@@ -49,11 +49,11 @@ class OperatorTemplate:
         self._action = action = variant.action
         self._relations = predicates.relations
         self._negation, self._need, self._cost_of = negation, need, cost_of
-        self._known = known = {name: i for i, name in enumerate(variant.rule.variables)}
+        self._columns = columns = {name: i for i, name in enumerate(variant.rule.variables)}
 
         kinds = predicates.classify(variant.literals)
         for atom in kinds.refuted:
-            negation.prepare(atom.predicate, map(filler(atom.terms, known), rows))
+            negation.prepare(atom.predicate, map(filler(atom.terms, columns), rows))
         self._positive = self._fills((*kinds.positive, *kinds.derived))
         self._derived = self._fills(kinds.derived)
         fills = self._fills(kinds.negative)
@@ -67,14 +67,14 @@ class OperatorTemplate:
         unnamed = [a for a in predicates.unnamed(variant.literals) if a.terms[0] not in named]
         static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
         self._static = self._fills([*static, *unnamed])
-        self._arguments = filler([parameter.name for parameter in action.parameters], known)
+        self._arguments = filler([parameter.name for parameter in action.parameters], columns)
         self._effects = Effects(
             variant.effects, variant.rule.variables, rows, predicates, negation, need
         )
 
         cost = action.cost
         self._price = (
-            filler((cost.predicate, *cost.terms), known) if isinstance(cost, Atom) else None
+            filler((cost.predicate, *cost.terms), columns) if isinstance(cost, Atom) else None
         )
         self._simple = not (kinds.negative or kinds.refuted) and all(
             effect.simple for effect in variant.effects
@@ -123,7 +123,7 @@ class OperatorTemplate:
         return self._simple and len(operator.deleted) == self._deletes
 
     def _fills(self, atoms: Sequence[Atom]) -> list[Callable[[Row], Fact]]:
-        return [filler((atom.predicate, *atom.terms), self._known) for atom in atoms]
+        return [filler((atom.predicate, *atom.terms), self._columns) for atom in atoms]
 
     def _needs(self, row: Row) -> Needs:
         """Work out what the negative literals need, and ask for the derived facts."""

@@ -156,9 +156,9 @@ class Instantiation:
         for atom in (*kinds.positive, *kinds.derived):
             needs.positive.append((atom.predicate, *atom.terms))
         for atom in kinds.static:
-            known = atom.terms in relations.rows(atom.predicate)
-            if not (known and atom.predicate.startswith("type ")):
-                (static if known else needs.positive).append((atom.predicate, *atom.terms))
+            holds = atom.terms in relations.rows(atom.predicate)
+            if not (holds and atom.predicate.startswith("type ")):
+                (static if holds else needs.positive).append((atom.predicate, *atom.terms))
 
         for atom in kinds.negative:
             if atom.terms in relations.rows(atom.predicate):
@@ -209,8 +209,8 @@ class Instantiation:
             heads = self._heads[predicate] = dict[Fact, list[tuple[int, Row]]]()
             bodies = self._bodies[predicate] = []
             for i, (definition, rule) in enumerate(self._definitions[predicate]):
-                known = {name: k for k, name in enumerate(rule.variables)}
-                head = filler((predicate, *definition.head.terms), known)
+                columns = {name: k for k, name in enumerate(rule.variables)}
+                head = filler((predicate, *definition.head.terms), columns)
                 for row in sorted(rule.rows):
                     heads.setdefault(head(row), []).append((i, row))
                 kinds = self._predicates.classify(definition.literals)
@@ -218,11 +218,11 @@ class Instantiation:
                 static += self._predicates.unnamed(definition.literals)
                 parts = ((*kinds.positive, *kinds.derived), kinds.negative, kinds.refuted, static)
                 bodies.append(
-                    [[filler((a.predicate, *a.terms), known) for a in part] for part in parts]
+                    [[filler((a.predicate, *a.terms), columns) for a in part] for part in parts]
                 )
                 for atom in kinds.refuted:
                     self._negation.prepare(
-                        atom.predicate, map(filler(atom.terms, known), sorted(rule.rows))
+                        atom.predicate, map(filler(atom.terms, columns), sorted(rule.rows))
                     )
 
         axioms: list[Axiom] = []

@@ -60,7 +60,7 @@ def evaluate(ints, reals, t, r, x, space, node, parent):
 
     A state that comes again keeps its values.
     """
-    known = ints[space.evaluated + node]
+    evaluated = ints[space.evaluated + node]
     length = 0
     for k in range(t.heuristics):
         at = node * t.heuristics + k
@@ -68,9 +68,9 @@ def evaluate(ints, reals, t, r, x, space, node, parent):
             relax(ints, reals, t, r, x, x.closed)
             explore(ints, reals, t, r, x, x.closed)
             reals[space.values + at], length = relaxed_plan(ints, reals, t, r, x)
-        elif not known:
+        elif not evaluated:
             reals[space.values + at] = landmarks(ints, reals, r, x, space, x.closed, node, parent)
-    if not known:
+    if not evaluated:
         ints[space.evaluated + node] = 1
         ints[EVALUATED] += 1
     for k in range(length):
@@ -114,14 +114,14 @@ def expand(ints, reals, t, r, x, space, node, length, weight, below):
         if spent + reals[t.own + i] >= below:
             continue
         apply(ints, t, i, space.states + node * t.words, x.closed, x.after)
-        known = ints[
+        closed = ints[
             space.table + (place_of(ints, t.words, x.after, space.states, space.table, space.mask))
         ]
         step = reals[t.costs + i]
-        if known >= 0 and (greedy or cost + step >= reals[space.cost + known]):
+        if closed >= 0 and (greedy or cost + step >= reals[space.cost + closed]):
             continue
         reached = cost + (step + reals[x.extras + i] if ints[t.guarded + i] else step)
-        if reached == math.inf or (known >= 0 and reached >= reals[space.cost + known]):
+        if reached == math.inf or (closed >= 0 and reached >= reals[space.cost + closed]):
             continue
 
         dearer = reached - cost - step

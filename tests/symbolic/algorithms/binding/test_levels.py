@@ -39,8 +39,8 @@ def test_a_jump_resets_all_after_its_target() -> None:
         levels.enter(index, level(index))
         levels.take(index, (str(index),))
     levels.jump(3, 1)
-    assert levels.standing(0) and levels.standing(1)
-    assert levels.standing(2) is None
+    assert levels.valid_level(0) and levels.valid_level(1)
+    assert levels.valid_level(2) is None
     assert levels.next() == 2, "what shall be fresh is entered after each jump across it"
 
 
@@ -63,7 +63,7 @@ def test_resets_are_those_of_the_jumps_since(seed: int) -> None:
             levels.enter(index, level(index))
             entered[index] = len(jumps)
         for index in range(len(entered)):
-            assert (levels.standing(index) is None) == reference_resets(
+            assert (levels.valid_level(index) is None) == reference_resets(
                 jumps, entered[index], index
             )
 

@@ -53,12 +53,12 @@ GOALS = [
     ),
     (
         "(and (on b1 desk) (exists (?g - grasp) (holding b0 ?g)) (on b0 table))",
-        ("(exists (?g) (holding b0 ?g))", "(on b0 table)"),
+        ("(exists (?g - grasp) (holding b0 ?g))", "(on b0 table)"),
         2,
     ),
     (
         "(and (exists (?g - grasp) (holding b0 ?g)) (exists (?g - grasp) (holding b1 ?g)))",
-        ("(exists (?g) (holding b0 ?g))", "(exists (?g) (holding b1 ?g))"),
+        ("(exists (?g - grasp) (holding b0 ?g))", "(exists (?g - grasp) (holding b1 ?g))"),
         2,
     ),
     (

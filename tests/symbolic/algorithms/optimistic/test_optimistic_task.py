@@ -9,6 +9,7 @@ import pytest
 
 from tamp.stream import Rejection
 from tamp.symbolic.algorithms.knowledge import Knowledge
+from tamp.symbolic.algorithms.optimistic import optimistic_task as module
 from tamp.symbolic.algorithms.optimistic.optimistic_instantiation import MAX_DEPTH
 from tamp.symbolic.algorithms.optimistic.optimistic_task import (
     MAX_DEPTH_FACTOR,
@@ -75,6 +76,40 @@ def test_the_limit_rises_until_the_goal_is_reachable() -> None:
     made = optimistic_task(prepare(problem), knowledge)
     assert made.goal_is_reachable
     assert knowledge.depth_limit == 4
+
+
+def test_where_it_is_their_number_no_depth_is_tried_in_vain(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Two calls of the first level are too many for a second one: more are needed, not deeper ones."""
+    made_of: list[int] = []
+    instantiate = module.instantiate_streams
+
+    def counted(*arguments: Any, **options: Any) -> Any:
+        made_of.append(options["max_instances"])
+        return instantiate(*arguments, **options)
+
+    monkeypatch.setattr(module, "MAX_INSTANCES", 3)
+    monkeypatch.setattr(module, "instantiate_streams", counted)
+    domain = DOMAIN.replace("(last ?x)", "(last ?x) (far ?x)", 1)
+    streams = """(define (stream chain)
+      (:stream next :inputs (?x) :domain (link ?x) :outputs (?y) :certified (after ?x ?y))
+      (:stream far :inputs (?x ?y) :domain (after ?x ?y) :outputs (?z) :certified (and (link ?z) (far ?z)))
+      (:stream test-last :inputs (?x) :domain (far ?x) :certified (last ?x)))"""
+    functions: dict[str, Any] = dict.fromkeys(
+        ("next", "far", "test-last"), lambda *values, call: iter(())
+    )
+    names = {name: ("object",) for name in "abcd"}
+    init = " ".join(f"(link {name})" for name in names)
+    prepared = prepare(stream_task(domain, streams, functions, names, init, "(done)"))
+    knowledge = Knowledge()
+
+    made = optimistic_task(prepared, knowledge)
+    assert made.facts.crowded and not made.goal_is_reachable
+    assert knowledge.depth_limit == MAX_DEPTH and len(made_of) <= 3
+    assert raise_depth_limit(knowledge, made) and knowledge.depth_factor == 2
+    made = optimistic_task(prepared, knowledge)
+    assert made.goal_is_reachable
 
 
 def test_calls_that_ended_are_left_out_and_their_values_are_there() -> None:

@@ -18,6 +18,11 @@ def test_a_formula_is_shown_on_one_line_with_the_names_of_its_variables() -> Non
     )
 
 
+def test_types_are_shown_as_they_are_written() -> None:
+    typed = Exists((Parameter("?x 2", ("cup", "mug")), Parameter("?y 3", ("table",))), ON)
+    assert meaning_of(typed).text == "(exists (?x - (either cup mug) ?y - table) (on ?x table))"
+
+
 def test_its_terms_come_from_left_to_right_and_again_where_they_stand_again() -> None:
     formula = And((Atom("wet", ("cup",)), Not(ON), Or((Atom("dry", ()), Atom("wet", ("cup",))))))
     assert meaning_of(formula).terms == ("cup", "?x 2", "table", "cup")

@@ -66,15 +66,15 @@ def appended(rows: CsrRows, at: Integers, what: Integers, size: int) -> CsrRows:
     start empty.
     """
     ends = full(size + 1, 0)
-    known = len(rows.starts) - 1
-    for i in range(known):
+    count = len(rows.starts) - 1
+    for i in range(count):
         ends[i + 1] = rows.starts[i + 1] - rows.starts[i]
     for i in at:
         ends[i + 1] += 1
     for i in range(size):
         ends[i + 1] += ends[i]
     places, joined = ends[:-1].copy(), full(ends[-1], 0)
-    for i in range(known):
+    for i in range(count):
         for k in range(rows.starts[i], rows.starts[i + 1]):
             joined[places[i]] = rows.values[k]
             places[i] += 1

@@ -1,4 +1,4 @@
-"""Circumstances of an execution: the grasp, who mends, what disturbs, which engine."""
+"""Options of an execution: the grasp, who replans, what disturbs, which engine."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from tamp.geometric.samplers.sampler import Classifier
 
 
 @dataclass(frozen=True)
-class Circumstances:
-    """The circumstances of an execution: how a plan is carried out.
+class ExecutionOptions:
+    """The options of an execution: how a plan is carried out.
 
     Attributes:
         grasp: "friction", or "constraint": the fingers bind what they close on.

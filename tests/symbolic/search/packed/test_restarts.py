@@ -1,0 +1,88 @@
+"""Restarts in turn: which search goes on, with which heuristics, for how many states."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, ClassVar
+
+import pytest
+
+from tamp.symbolic.search.expansion import Plan
+from tamp.symbolic.search.packed import restarts
+from tamp.symbolic.search.packed.search import Stalled
+
+PLAN = Plan((), 1.0)
+
+
+class Scripted:
+    """In the place of packed searches: notes what is asked, finds a plan at the n-th question."""
+
+    asked: ClassVar[list[tuple[int, tuple[str, ...], bool, int, int]]] = []
+    made = 0
+    found_at = 0
+
+    def __init__(
+        self, search: Any, names: Any, weight: float, random: int = 0, achievers: bool = False
+    ) -> None:
+        assert weight == math.inf
+        Scripted.made += 1
+        self._told = Scripted.made, tuple(names), achievers, random
+
+    def plan(self, patience: int) -> Plan | None:
+        Scripted.asked.append((*self._told, patience))
+        if len(Scripted.asked) < Scripted.found_at:
+            raise Stalled
+        return PLAN
+
+
+def asked(
+    monkeypatch: pytest.MonkeyPatch, found_at: int, names: tuple[str, ...], seed: int = 0
+) -> list[tuple[int, tuple[str, ...], bool, int, int]]:
+    Scripted.asked, Scripted.made, Scripted.found_at = [], 0, found_at
+    monkeypatch.setattr(restarts, "PackedSearch", Scripted)
+    assert restarts.greedy_with_restarts(None, names, seed) is PLAN  # type: ignore[arg-type]
+    return Scripted.asked
+
+
+def test_luby_numbers() -> None:
+    assert [restarts.luby(k) for k in range(1, 16)] == [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]
+
+
+def test_without_a_stall_there_is_one_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert asked(monkeypatch, 1, ("ff",)) == [(1, ("ff",), False, 0, restarts.STALLED)]
+
+
+def test_ways_of_two_heuristics_are_taken_in_turn_and_the_first_search_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    both = ("ff", "landmarks")
+    found = asked(monkeypatch, 9, both)
+    assert [(number, names, achievers) for number, names, achievers, _, _ in found] == [
+        (1, both, False),
+        (2, both, False), (3, both, True), (4, ("ff",), False), (1, both, False),
+        (5, both, False), (6, both, True), (7, ("ff",), False), (1, both, False),
+    ]  # fmt: skip
+    unit = restarts.UNIT
+    assert [patience for *_, patience in found[1:]] == [
+        unit, unit, 2 * unit, unit, unit, 2 * unit, 4 * unit, unit,
+    ]  # fmt: skip
+    randoms = [random for number, _, _, random, _ in found if number > 1]
+    assert len(set(randoms)) == len(randoms) and all(random % 2 for random in randoms)
+
+
+def test_the_seed_decides_the_orders(monkeypatch: pytest.MonkeyPatch) -> None:
+    first, again, other = (asked(monkeypatch, 6, ("ff",), seed) for seed in (1, 1, 2))
+    assert first == again != other
+
+
+@pytest.mark.parametrize(
+    ("names", "ways"),
+    [
+        (("ff",), [(("ff",), False)]),
+        (("landmarks",), [(("landmarks",), False), (("landmarks",), True)]),
+    ],
+)
+def test_a_single_heuristic_has_fewer_ways(
+    names: tuple[str, ...], ways: list[tuple[tuple[str, ...], bool]]
+) -> None:
+    assert restarts.ways(names) == ways

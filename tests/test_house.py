@@ -1,0 +1,45 @@
+"""The house is as it is meant to be: each measure of `benchmarks/house.py` keeps its limit."""
+
+from __future__ import annotations
+
+import networkx as nx
+import pytest
+
+from benchmarks import house
+from benchmarks.house import Measure, measures
+
+NAMES = 9
+
+
+@pytest.fixture(scope="module")
+def made() -> list[Measure]:
+    return measures()
+
+
+@pytest.mark.parametrize("number", range(NAMES))
+def test_measures_keep_their_limits(number: int, made: list[Measure]) -> None:
+    assert len(made) == NAMES
+    one = made[number]
+    assert one.holds, f"{one.name}: {one.shown}, not {one.limit}\n{house.circles()}{house.upward()}"
+
+
+@pytest.mark.parametrize(
+    ("value", "limit", "holds"),
+    [(16, "<= 16", True), (17, "<= 16", False), (0.55, ">= 0.55", True), (0.54, ">= 0.55", False)],
+)
+def test_a_limit_is_kept_or_not(value: float, limit: str, holds: bool) -> None:
+    assert Measure("m", value, limit).holds is holds
+
+
+def test_circles_and_steps_up_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    graph = nx.DiGraph([("tamp.plan.a", "tamp.planner.b"), ("tamp.planner.b", "tamp.plan.a")])
+    monkeypatch.setattr(house, "imports", lambda *, late: graph)
+    assert house.circles() == [["tamp.plan.a", "tamp.planner.b"]]
+    assert house.upward() == [("tamp.planner.b", "tamp.plan.a")]
+
+
+def test_imports_are_those_of_the_code() -> None:
+    graph = house.imports(late=True)
+    assert graph.has_edge("tamp.planner.optimize", "tamp.planner.problem")
+    assert graph.number_of_edges() > 1000
+    assert house.imports(late=False).number_of_edges() < graph.number_of_edges()
