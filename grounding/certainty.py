@@ -1,4 +1,4 @@
-"""Check that a trained classifier does better than chance: one that does not must not pass for one
+"""Significance of a trained classifier: one that does no better than chance must not pass for one
 that knows.
 """
 

@@ -1,5 +1,5 @@
-"""The opinion of what was learned so far about the scene on the page: where it is wrong, a label
-teaches most.
+"""The learned classifier's opinion of the scene on the page, for active learning: where it is
+wrong, a label teaches most.
 """
 
 from __future__ import annotations

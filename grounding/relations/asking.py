@@ -1,4 +1,4 @@
-"""Active help: which scene to show next, and which question to ask."""
+"""Active learning: which scene to show next, and which question to ask."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Chance: situations as they come about without the relation being meant, on furniture of other
-heights, yaws and sizes.
+"""The null hypothesis, chance: situations as they come about without the relation being meant, on
+furniture of other heights, yaws and sizes.
 """
 
 from __future__ import annotations

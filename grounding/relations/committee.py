@@ -1,5 +1,5 @@
-"""A committee of short conjunctions of intervals: which measures of the demonstrations are no
-coincidence.
+"""A committee (ensemble) of short conjunctions of intervals: which measures of the demonstrations
+are no coincidence.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Execution of a stored plan in physics: monitored, and mended where things come differently."""
+"""Execution of a stored plan in physics: monitored, and replanned where things come differently."""
 
 from __future__ import annotations
 

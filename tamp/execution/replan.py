@@ -45,7 +45,7 @@ class Replanned:
 
 
 class Replanner:
-    """Plans anew with the options of the plan that it mends.
+    """Plans anew with the options of the plan that it replaces.
 
     Args:
         stored: The plan.

@@ -175,7 +175,7 @@ def _always(*inputs: Any) -> bool:
 def _tests(
     predicate: Function, domain: Domain, function: Callable[..., Any]
 ) -> tuple[BoundStream, BoundStream]:
-    """Build the streams that promise a decided predicate, and its complement."""
+    """Build the test streams that certify a decided predicate, and its complement."""
 
     def holds(*inputs: Any, call: Any) -> bool:
         return bool(function(*inputs))
@@ -197,7 +197,7 @@ def _tests(
 
 
 def _failing(stream: Stream, domain: Domain, function: Any) -> BoundStream:
-    """Build the stream that promises that a test does not pass."""
+    """Build the stream that certifies that a test does not pass."""
     (atom,) = stream.certified
     test = stream_function(stream, function)
 

@@ -160,7 +160,7 @@ class _Best:
         self.plan: Solution | None = None
 
     def hear(self, number: int, told: SearchStatistics | dict[str, Any]) -> None:
-        """Hear what a run tells."""
+        """Receive a report of a run."""
         if isinstance(told, SearchStatistics):
             if self._progress is not None:
                 self._progress(told)

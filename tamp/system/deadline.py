@@ -1,4 +1,4 @@
-"""Deadlines: the time that a computation may still take, passed down as an argument."""
+"""Deadlines (timeouts): the time that a computation may still take, passed down as an argument."""
 
 from __future__ import annotations
 

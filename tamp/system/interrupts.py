@@ -1,4 +1,4 @@
-"""Hard timeouts: an alarm ends computations that do not look at the clock.
+"""Hard timeouts: a timer's signal interrupts computations that do not look at the deadline.
 
 Not by a worker process that is killed: values of streams, users' functions and what a run has
 learned would have to be pickled, and the best plan so far would be lost with the process.
@@ -86,8 +86,8 @@ class Interrupter:
         self._late = False
 
     def run(self, work: Callable[[], Result]) -> Result:
-        """Call a function, in which alone the alarm rings; when this returns or raises, all is as
-        it was.
+        """Call a function, in which alone interruptions are raised; when this returns or raises, all
+        is as it was.
 
         Raises:
             OutOfTime: As the function has let it out.
@@ -137,8 +137,8 @@ class Interrupter:
                 raise KeyboardInterrupt
 
     def _inside(self, work: Callable[[], Result]) -> Result:
-        """Return the frame under which the alarm rings: on the way out of it nothing can be raised
-        any more.
+        """Return the frame under which interruptions are raised: on the way out of it nothing can be
+        raised any more.
         """
         self._inner = sys._getframe()
         try:
@@ -147,7 +147,7 @@ class Interrupter:
             self._inner = None
 
     def _set(self) -> None:
-        """Set the timer of the alarm."""
+        """Set the timer of the interruption."""
         signal.setitimer(
             signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again
         )
@@ -172,7 +172,7 @@ class Interrupter:
         self._raise_in_main_thread(signal.SIGVTALRM, frame)
 
     def _raise_in_main_thread(self, number: int, frame: FrameType | None) -> None:
-        """Handle the alarm: raise, if this is a place for it."""
+        """Handle the timer's signal: raise, if this is a place for it."""
         if self._deadline.ended or not self._is_inside(frame):
             return
 

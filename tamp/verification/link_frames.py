@@ -1,4 +1,4 @@
-"""Frames of all links in many states at once: the engine's kinematics, measured joint by joint.
+"""Forward kinematics of all links in many states at once, measured from the engine joint by joint.
 
 A link's frame is the product of the exponentials of the joints before it (Lynch and Park, Modern
 Robotics, 2017, 4.1). Each is measured: the engine is asked where the links are with the joint at a

@@ -1,4 +1,6 @@
-"""Support of bodies: their undersides and what is below, felt by the physics engine's rays."""
+"""Support contacts of bodies: their undersides and what is below, found by ray casts in the physics
+engine.
+"""
 
 from __future__ import annotations
 

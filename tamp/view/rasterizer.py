@@ -1,5 +1,5 @@
-"""Triangles to pixels, without a window, a graphics card or a driver: a depth buffer, a light and
-its shadows.
+"""Rasterizer: triangles to pixels by a depth buffer (z-buffer), with a light and its shadows; no
+window, graphics card or driver.
 
 Not pybullet's software renderer, which was tried on one picture (`one_object`, 960 x 720): it
 took 0.29 s of processor time against 0.20 s here, drew jagged edges and the shadow of a table's top

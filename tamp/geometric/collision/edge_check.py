@@ -1,4 +1,6 @@
-"""The compiled decision over a whole edge, as Python calls it; see kernels.py for the proof."""
+"""Continuous collision checking of an edge in compiled code, as Python calls it; see kernels.py for
+the proof.
+"""
 
 from __future__ import annotations
 

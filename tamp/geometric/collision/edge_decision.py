@@ -1,5 +1,5 @@
-"""The decision over a whole edge, for compiled code that has its arrays ready; see kernels.py for
-the proof.
+"""Continuous collision checking of an edge, for compiled code that has its arrays ready; see
+kernels.py for the proof.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The geometry as arrays, in the layout that the compiled kernels read."""
+"""The geometry as a structure of arrays, in the layout that the compiled kernels read."""
 
 from __future__ import annotations
 

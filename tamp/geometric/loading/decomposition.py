@@ -1,4 +1,4 @@
-"""Convex pieces that together contain a triangle mesh, found by cutting it with planes.
+"""Convex decomposition of a triangle mesh: pieces that together contain it, cut by planes.
 
 CoACD takes 10 to 60 s for a mug and V-HACD leaves 9 mm of it uncovered; this takes about a second,
 contains the mesh by construction, and needs no closed surface. A piece is the convex hull of what

@@ -1,4 +1,4 @@
-"""Supports: what carries a body where it is, felt along vertical lines.
+"""Supports: what carries a body where it is, found by casting rays along vertical lines.
 
 The judge asks the same by rays of its physics engine.
 """

@@ -1,6 +1,4 @@
-"""The highest level face of a body, on which others may stand: over all its parts, at their
-poses.
-"""
+"""The support surface on top of a body, its highest level face, over all its parts."""
 
 from __future__ import annotations
 

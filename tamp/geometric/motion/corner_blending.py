@@ -1,5 +1,5 @@
-"""The geometry along which a path is timed: a polyline whose corners are rounded where that is
-certified.
+"""Corner blending: a polyline whose corners are rounded by parabolic blends where that is
+certified, along which a path is timed.
 
 What comes out is again a polyline, dense in the roundings. The timed trajectory runs between its
 nodes in straight lines, so that it stays exactly on what was checked; tangents and bends say how
@@ -167,7 +167,7 @@ _Node = tuple[
 
 
 def blend(passed: list[Corner]) -> BlendedPath:
-    """Lay the rail through corners at which the motion does not rest, except at the first and the
+    """Blend the path through corners at which the motion does not rest, except at the first and the
     last.
     """
     *columns, edges = zip(*_nodes(passed), strict=True)

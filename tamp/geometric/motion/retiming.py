@@ -1,4 +1,5 @@
-"""Time-optimal path parametrization of a rail in compiled code: a pass back, a pass forth.
+"""Time-optimal path parametrization (TOPP) of a blended path in compiled code: a backward pass, a
+forward pass.
 
 The reachability analysis of Pham and Pham, "A new approach to time-optimal path parameterization
 based on reachability analysis", T-RO 2018. Its linear programs have two variables, the squared rate

@@ -1,5 +1,5 @@
-"""Asking a generator that anyone may have written: what comes back are placements or poses, in
-time, or the reason why not.
+"""Guarded call of a sampler that anyone may have written: placements or poses come back, in time,
+or the reason why not.
 """
 
 from __future__ import annotations

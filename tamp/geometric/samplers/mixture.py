@@ -1,5 +1,5 @@
-"""Generators that share the work of one relation: the chosen one, and the hand-made one that it can
-only help.
+"""Mixture of the generators of one relation, allocating work as a bandit does: the chosen one, and
+the hand-made one that it can only help.
 """
 
 from __future__ import annotations

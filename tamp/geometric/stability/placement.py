@@ -27,7 +27,7 @@ BALANCE_MARGIN_M = 0.015
 
 @dataclass(frozen=True)
 class Placement:
-    """A body laid on a face in a region: all that the pose at rest is made of.
+    """A body on one of its stable faces in a region: all that the pose at rest is made of.
 
     Attributes:
         region: Name of the surface or the cavity.

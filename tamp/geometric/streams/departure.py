@@ -1,6 +1,4 @@
-"""Collision checks of a body in the hand while it is lifted off; what it touches at the start it
-may leave.
-"""
+"""Collision checks of the retreat with a body in hand: what it touches at first it may leave."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Poses of a relation one after another: batches proposed, judged in their order, the promising
-ones first.
+"""Rejection sampling of a relation's poses: batches proposed, certified in their order, the
+promising ones first.
 """
 
 from __future__ import annotations

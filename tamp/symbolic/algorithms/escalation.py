@@ -1,4 +1,4 @@
-"""Escalation: what the adaptive algorithm does when its rounds lead nowhere."""
+"""Escalation: the fallbacks of the adaptive algorithm when its rounds make no progress."""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""A goal's conjuncts, and for each the conjunctions of fluent literals by which it can hold."""
+"""A goal in disjunctive form: its conjuncts, and for each the conjunctions of fluent literals by
+which it can hold.
+"""
 
 from __future__ import annotations
 

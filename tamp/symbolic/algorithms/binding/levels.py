@@ -1,4 +1,4 @@
-"""The levels of a backtracking search that keeps, across jumps back, what a jump leaves unchanged.
+"""The levels of a backjumping search that keeps, across jumps back, what a jump leaves unchanged.
 
 A jump back resets all levels after its target: each begins anew with the value it had last. Most of
 them see the same inputs as before, so going down through them again changes nothing; they are

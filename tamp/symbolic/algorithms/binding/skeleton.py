@@ -102,7 +102,7 @@ class Skeleton:
     )
 
     def recall(self, earlier: Skeleton) -> None:
-        """Take over the values that another skeleton had last, where a call means the same here.
+        """Warm-start from the values that another skeleton had last, where a call is the same here.
 
         Each is tried first where its inputs are those that it was drawn for.
         """

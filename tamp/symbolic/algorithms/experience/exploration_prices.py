@@ -1,4 +1,4 @@
-"""Prices for what is not tried yet."""
+"""Exploration prices: optimistic prior costs of what is not tried yet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Goals that can be reached one by one and not together."""
+"""Minimal sets of conflicting goals: each can be reached alone, and not together."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Facts found by what they are about, and joins over them."""
+"""An index of facts by predicate and terms, and joins over them."""
 
 from __future__ import annotations
 

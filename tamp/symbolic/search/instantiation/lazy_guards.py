@@ -162,7 +162,7 @@ class DerivedGuards:
 
 
 class LazyGuards(Sequence[Guard]):
-    """An operator's guards: some at hand, the others made when somebody looks.
+    """An operator's guards, evaluated lazily: some at hand, the others made on access.
 
     Attributes:
         made: Those at hand.
