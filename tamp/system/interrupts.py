@@ -86,9 +86,8 @@ class Interrupter:
         self._late = False
 
     def run(self, work: Callable[[], Result]) -> Result:
-        """Call a function, in which alone interruptions are raised; when this returns or raises, all
-        is as it was.
-
+        """Call a function, in which alone interruptions are raised; when this returns or
+        raises, all is as it was.
         Raises:
             OutOfTime: As the function has let it out.
             KeyboardInterrupt: The same.
@@ -137,8 +136,8 @@ class Interrupter:
                 raise KeyboardInterrupt
 
     def _inside(self, work: Callable[[], Result]) -> Result:
-        """Return the frame under which interruptions are raised: on the way out of it nothing can be
-        raised any more.
+        """Return the frame under which interruptions are raised: on the way out of it nothing
+        can be raised any more.
         """
         self._inner = sys._getframe()
         try:
