@@ -88,6 +88,7 @@ class Interrupter:
     def run(self, work: Callable[[], Result]) -> Result:
         """Call a function, in which alone interruptions are raised; when this returns or
         raises, all is as it was.
+
         Raises:
             OutOfTime: As the function has let it out.
             KeyboardInterrupt: The same.
