@@ -152,3 +152,43 @@ def test_no_line_is_too_long(folder: str) -> None:
         if len(line) > LINE_CHARACTERS
     ]
     assert not found, "\n".join(found)
+
+
+HOMONYMS = {
+    "standing": (),
+    "settle": ("tamp/simulation/settle.py",),
+    "known": (
+        "tamp/geometric/collision/edge_decision.py",
+        "tamp/planner/own_relations.py",
+        "tamp/symbolic/search/instantiation/instantiator.py",
+    ),
+}
+"""Words that once meant three things each, and the files where what is left of them is defined:
+bodies that physics lets come to rest, and what is known to hold."""
+
+
+def _names(tree: ast.Module) -> Iterator[str]:
+    """Yield the names that a module defines: functions, classes, arguments, variables, attributes."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            yield node.name
+        elif isinstance(node, ast.arg):
+            yield node.arg
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.id
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield node.attr
+
+
+@pytest.mark.parametrize("word", HOMONYMS)
+def test_a_name_means_one_thing(word: str) -> None:
+    found = {
+        str(path.relative_to(ROOT))
+        for folder in VERB_FOLDERS
+        for path in _files(folder)
+        if any(
+            name.strip("_").lower() == word
+            for name in _names(ast.parse(path.read_text(encoding="utf-8")))
+        )
+    }
+    assert found == set(HOMONYMS[word])

@@ -37,21 +37,21 @@ def type_operators_once() -> None:
         return
 
     typed = BaseFunction.get_call_type
-    known: dict[tuple[Any, ...], tuple[Any, Any]] = {}
+    answers: dict[tuple[Any, ...], tuple[Any, Any]] = {}
 
     def get_call_type(self: Any, context: Any, args: Any, kws: Any) -> Any:
         if kws or not all(isinstance(argument, PLAIN) for argument in args):
             return typed(self, context, args, kws)
 
         question = (context, self, tuple(args))
-        if question in known:
-            signature, implementation = known[question]
+        if question in answers:
+            signature, implementation = answers[question]
             self._impl_keys[signature.args] = implementation
             return signature
         signature = typed(self, context, args, kws)
         implementation = self.get_impl_key(signature)
         if implementation is self.key[0]:
-            known[question] = signature, implementation
+            answers[question] = signature, implementation
         return signature
 
     BaseFunction.get_call_type = get_call_type

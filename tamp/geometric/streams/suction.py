@@ -225,11 +225,11 @@ def _canonical(
     points, normals = solid.surface_points(rng, PLACES_LOOKED_FOR)
     faces: list[tuple[Array, list[Array]]] = []
     for point, normal in zip(points, normals, strict=True):
-        known = next((at for one, at in faces if one @ normal > SAME_NORMAL), None)
-        if known is None:
+        beside = next((at for one, at in faces if one @ normal > SAME_NORMAL), None)
+        if beside is None:
             faces.append((normal, [point]))
         else:
-            known.append(point)
+            beside.append(point)
 
     faces.sort(key=lambda face: -float(np.round(face[0] @ up, 2)))
     for normal, drawn in faces:

@@ -106,9 +106,9 @@ class Skeleton:
 
         Each is tried first where its inputs are those that it was drawn for.
         """
-        known = earlier.calls
+        places = earlier.calls
         for call, place in self.calls.items():
-            value = earlier.memory.get(known.get(call, -1))
+            value = earlier.memory.get(places.get(call, -1))
             if value is not None:
                 self.memory.setdefault(place, value)
 
