@@ -31,7 +31,7 @@ def advice(domain: Domain) -> frozenset[str]:
         predicate
         for predicate in domain.predicates
         for sort in (WANTED, ALSO)
-        if WANTED + predicate.removeprefix(sort) in domain.predicates
+        if predicate.startswith(sort) and WANTED + predicate.removeprefix(sort) in domain.predicates
     }
     return frozenset(told.union(ADVICE if SETTLED in domain.predicates else ()))
 
