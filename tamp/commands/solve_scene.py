@@ -23,7 +23,7 @@ from tamp.symbolic.algorithms.result import Outcome
 from tamp.system import guard
 from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress, say
-from tamp.view.outputs import OutputRequest, write_outputs
+from tamp.view.outputs import OutputRequest, check_page, write_outputs
 from tamp.view.outside import check_inside
 
 
@@ -87,9 +87,11 @@ def load(request: Request) -> Loaded:
     check_outputs(
         options.outputs, (*read, *sampler_files((*problem.samplers.values(), *named.values())))
     )
-    if options.scene.html is not None and not options.scene.allow_outside:
-        shown_meshes = (*problem.files["meshes"], *problem.files["drawn"])
-        check_inside(shown_meshes, problem.files["problem"][0])
+    if options.scene.html is not None:
+        check_page(options.scene.html)
+        if not options.scene.allow_outside:
+            shown_meshes = (*problem.files["meshes"], *problem.files["drawn"])
+            check_inside(shown_meshes, problem.files["problem"][0])
 
     if options.scene.statistics is not None:
         domain_name = problem.stream_task.task.domain.name

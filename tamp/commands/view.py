@@ -16,7 +16,7 @@ from tamp.system.command_line import INTERRUPTED, as_command
 from tamp.system.options import read_options
 from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress, say
-from tamp.view.outputs import OutputRequest, write_outputs
+from tamp.view.outputs import OutputRequest, check_page, write_outputs
 
 
 @dataclass(frozen=True)
@@ -86,8 +86,10 @@ def _view(options: View) -> None:
 
     def check(files: Sequence[Path], meshes: Sequence[Path]) -> None:
         check_outputs(request.outputs, (*files, *meshes))
-        if options.html is not None and not options.allow_outside:
-            check_inside(meshes, files[0])
+        if options.html is not None:
+            check_page(options.html)
+            if not options.allow_outside:
+                check_inside(meshes, files[0])
 
     timeline, story, document = open_timeline(options.what, options.problem, check)
     write_outputs(request, timeline, story, document, Path(options.what), say)

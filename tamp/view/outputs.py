@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 
 MOST_PIXELS = 4096
 """Columns or rows of a picture."""
+
+MOST_BEFORE_HTML = 4096
+"""Bytes in which the element of a page begins."""
 
 
 @dataclass(frozen=True)
@@ -90,6 +94,30 @@ class OutputRequest:
             )
         if self.view and self.browser:
             check_browser()
+
+
+def check_page(page: Path) -> None:
+    """Refuse to write a page over what is none.
+
+    Raises:
+        InputError: A file that neither holds a page nor is named as one.
+    """
+    if _is_of_others(page):
+        raise InputError(
+            "it is there already, and no page: --html would overwrite it",
+            file=page,
+            remedy="Choose another place with --html",
+        )
+
+
+def _is_of_others(file: Path) -> bool:
+    """Check that a file holds what is no page, and is not named as one either."""
+    if file.suffix.lower() in (".html", ".htm") or not file.is_file():
+        return False
+    with contextlib.suppress(OSError), file.open("rb") as stream:
+        head = stream.read(MOST_BEFORE_HTML).lower()
+        return bool(head.strip()) and b"<html" not in head
+    return False
 
 
 def write_outputs(

@@ -9,7 +9,7 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.geometric.loading.meshes import find_mesh
-from tamp.view.outputs import MOST_PIXELS, OutputRequest
+from tamp.view.outputs import MOST_PIXELS, OutputRequest, check_page
 from tamp.view.outside import check_inside
 from tamp.view.video_formats import VIDEO_FORMATS, check_suffix
 from tests.needs import NEEDS_PYBULLET
@@ -51,6 +51,19 @@ def test_what_cannot_be_done_is_refused(
     with pytest.raises(InputError, match=words):
         request_.check()
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_page_goes_over_pages_only(tmp_path: Path) -> None:
+    log, page, named = tmp_path / "runs.jsonl", tmp_path / "page", tmp_path / "old.html"
+    log.write_text('{"seed": 1}\n', encoding="utf-8")
+    page.write_text("<!DOCTYPE html>\n<html>", encoding="utf-8")
+    named.write_text("to be filled", encoding="utf-8")
+    with pytest.raises(InputError, match=r"runs\.jsonl: it is there already, and no page"):
+        check_page(log)
+    for file in (page, named, tmp_path / "new", tmp_path / "new.html"):
+        check_page(file)
+    (tmp_path / "empty").touch()
+    check_page(tmp_path / "empty")
 
 
 def test_limits_themselves_are_fine(tmp_path: Path) -> None:
