@@ -219,8 +219,9 @@ _STANDS = np.eye(4)
 def _canonical(
     solid: ConvexUnion, fit: _CupFit, up: Array, rng: np.random.Generator
 ) -> Iterator[list[Array]]:
-    """List the places over the body's middle on each of its faces, and in their middles, those that
-    look up first; each with the hand turned all ways, in random order.
+    """List the places over the body's middle on each of its faces, or where the middle is not over
+    it in its own middle, those that look up first; once more for each way in which the hand may be
+    turned, in random order.
     """
     points, normals = solid.surface_points(rng, PLACES_LOOKED_FOR)
     faces: list[tuple[Array, list[Array]]] = []
@@ -232,17 +233,18 @@ def _canonical(
             beside.append(point)
 
     faces.sort(key=lambda face: -float(np.round(face[0] @ up, 2)))
+    places: list[tuple[Array, Array]] = []
     for normal, drawn in faces:
-        places = [solid.centre, np.mean(drawn, axis=0)]
-        spins = rng.permutation(SPINS) * 2 * math.pi / SPINS
-        tools: list[Array] = []
-        for place in places:
-            surface = _outermost(solid, place, normal)
-            if surface is None or fit.sealed(surface, normal, 0.0, up) is None:
-                continue
-            found = (fit.sealed(surface, normal, float(spin), up) for spin in spins)
-            tools += [T for T in found if T is not None]
-        yield tools
+        over = _outermost(solid, solid.centre, normal)
+        beside = _outermost(solid, np.mean(drawn, axis=0), normal)
+        if over is not None and fit.sealed(over, normal, 0.0, up) is not None:
+            places.append((over, normal))
+        elif beside is not None and fit.sealed(beside, normal, 0.0, up) is not None:
+            places.append((beside, normal))
+
+    for spin in rng.permutation(SPINS) * 2 * math.pi / SPINS:
+        tools = (fit.sealed(point, normal, float(spin), up) for point, normal in places)
+        yield [T for T in tools if T is not None]
 
 
 def _outermost(solid: ConvexUnion, point: Array, normal: Array) -> Array | None:

@@ -73,6 +73,13 @@ def test_the_first_grasp_is_from_above_over_the_middle(robot: Robot) -> None:
     assert T.position == pytest.approx((0.0, 0.0, 0.05 + CUP_GAP_M), abs=1e-9)
 
 
+def test_every_face_has_its_turn_before_one_is_held_another_way(robot: Robot) -> None:
+    # what is to be laid on another side is held by what is up there
+    grasps = first(robot, body(Box((0.06, 0.07, 0.08)), mass=0.1), 6)
+    axes = {tuple(np.round(g.T_tool_body.inverse().rotation[:, 2]).astype(int)) for g in grasps}
+    assert len(axes) == 6
+
+
 def test_a_can_is_held_by_its_ends_only(robot: Robot) -> None:
     grasps = first(robot, body(Cylinder(0.033, 0.1)), 40)
     assert len(grasps) == 40
