@@ -64,6 +64,7 @@ class Options:
         folder: Tasks of one's own, instead of those that are made.
         peers: The environment with the peers.
         pyperplan: Run pyperplan (FF, greedy) as well; it takes its time.
+        first: The seed of the tasks that are made.
         repeats: Pairs of each task.
         seconds: Budget of one run.
     """
@@ -72,6 +73,7 @@ class Options:
     folder: Path | None = None
     peers: Path = field(default_factory=lambda: Path(tempfile.gettempdir()) / "tamp-peers")
     pyperplan: bool = False
+    first: int = 0
     repeats: int = 3
     seconds: float = 60.0
 
@@ -86,10 +88,10 @@ def conditions(size: int) -> Task:
     return domain, problem("conditions", "", [f"(switch {name})" for name in names], ["(done)"])
 
 
-def made(folder: Path, name: str, size: int) -> Path:
+def made(folder: Path, name: str, size: int, seed: int = 0) -> Path:
     """Write a task into the folder; return its path without the endings."""
-    domain, task = conditions(size) if name == "conditions" else GENERATORS[name](size, Random(0))
-    path = folder / f"{name}-{size}"
+    domain, task = conditions(size) if name == "conditions" else GENERATORS[name](size, Random(seed))
+    path = folder / (f"{name}-{size}" if seed == 0 else f"{name}-{size}-{seed}")
     Path(f"{path}.domain.pddl").write_text(domain, encoding="utf-8")
     Path(f"{path}.problem.pddl").write_text(task, encoding="utf-8")
     return path
@@ -207,7 +209,7 @@ def main(options: Options) -> None:
     with tempfile.TemporaryDirectory() as folder:
         least = made(Path(folder), "gripper", 1)
         if options.folder is None:
-            paths = [made(Path(folder), name, SIZES[name]) for name in options.tasks or SIZES]
+            paths = [made(Path(folder), name, SIZES[name], options.first) for name in options.tasks or SIZES]
         else:
             ending = ".problem.pddl"
             found = sorted(path for path in options.folder.glob(f"*{ending}"))

@@ -19,6 +19,7 @@ from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
 from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
 from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.garbage import infrequent_collection
 from tamp.system.interrupts import Interrupter
 
 SEARCH = "greedy"
@@ -33,6 +34,17 @@ STRAIGHT = 600
 each of which may take ten times as long, are worth a plan that takes no detours."""
 
 AS_MANY = 4
+
+DEAR = 1.5
+"""Cost of a plan, as a multiple of the initial state's estimate, from which on a cheaper one is
+looked for as long as the search makes progress. One that costs no more than the estimate is left
+alone."""
+
+FOR_DEAR = 5
+"""How many times as many states as the first plan took are then seen at most."""
+
+ENDURANCE = 2
+"""States without progress after which that is given up, for each action of the first plan."""
 
 WEIGHTS = (2.0, 5.0)
 """Of the estimates in the search for a shorter plan: the next where the last has found none."""
@@ -152,6 +164,7 @@ def solve_symbolic(
         )
 
 
+@infrequent_collection()
 def _solve(
     problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline, seed: int
 ) -> SymbolicSolution:
@@ -206,19 +219,24 @@ def _shortened(
     Windows of a plan cannot be cut where each step enables the next; another search finds a plan of
     half the length (weighted A*, cf. Richter, Thayer, Ruml, The joy of forgetting, 2010).
     """
-    entries = sum(1 + len(operator.positive) for operator in instantiated.operators)
-    limit = SHORTENING // max(1, entries)
-    if found.expanded <= STRAIGHT:
-        limit = max(limit, min(AS_MANY * found.expanded, 10 * SHORTENING // max(1, entries)))
-    if found.plan is None or limit < len(found.plan.operators):
+    if found.plan is None:
         return found
+    length, cost = len(found.plan.operators), sum(one.cost for one in found.plan.operators)
+    if cost <= found.estimate:
+        return found
+    limits = dict.fromkeys(WEIGHTS, _worthwhile_states(instantiated, found))
+    endurance = None
+    if cost >= DEAR * found.estimate:
+        limits[WEIGHTS[0]] = max(limits[WEIGHTS[0]], FOR_DEAR * found.expanded)
+        endurance = max(ENDURANCE * length, limits[WEIGHTS[1]])
 
-    below = sum(operator.cost for operator in found.plan.operators) - 1e-9
-    for weight in WEIGHTS:
+    for weight, limit in limits.items():
+        if limit < length:
+            break
         try:
             better = search(
-                instantiated, search="wastar", weight=weight, limit=limit, deadline=deadline,
-                below=below,
+                instantiated, search="wastar", weight=weight, limit=limit, endurance=endurance,
+                deadline=deadline, below=cost - 1e-9,
             )  # fmt: skip
         except OutOfTime:
             break
@@ -232,6 +250,15 @@ def _shortened(
         if better.reason is Reason.UNSOLVABLE:
             break  # nothing is cheaper
     return found
+
+
+def _worthwhile_states(instantiated: InstantiatedTask, found: Result) -> int:
+    """Return how many states a search for a cheaper plan is worth, whatever that costs."""
+    entries = max(1, sum(1 + len(operator.positive) for operator in instantiated.operators))
+    limit = SHORTENING // entries
+    if found.expanded <= STRAIGHT:
+        limit = max(limit, min(AS_MANY * found.expanded, 10 * SHORTENING // entries))
+    return limit
 
 
 def refutation(task: Task, plan: Plan | None) -> str | None:

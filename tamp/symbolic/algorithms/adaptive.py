@@ -149,14 +149,25 @@ def bind_for_its_worth(run: Run, skeleton: Skeleton, expanded: int) -> dict[int,
     if expanded >= LONG_SEARCH:
         share = max(DRAWS_FOR_A_STATE * expanded, len(skeleton.nodes))
     worth = run.binder.draws + share
+
+    def is_worth_more() -> bool:
+        """Have the next round make more tries, unless the skeleton has had its share."""
+        if run.binder.draws >= worth:
+            return False
+        rounds = skeleton.rounds
+        skeleton.rounds += 1 + (rounds // 2 if rounds < MANY_ROUNDS else 0)
+        return True
+
+    def more() -> int | None:
+        return draws_of_round(skeleton)[0] if is_worth_more() else None
+
     while True:
-        before, rounds = run.binder.draws, skeleton.rounds
+        before = run.binder.draws
         tries, budget = draws_of_round(skeleton)
         budget = min(budget, MOST_SHARES * share) if share else budget
-        values = bind_skeleton(run, skeleton, tries, budget)
-        if values is not None or run.binder.draws >= worth or run.binder.draws == before:
+        values = bind_skeleton(run, skeleton, tries, budget, more=more)
+        if values is not None or run.binder.draws == before or not is_worth_more():
             return values
-        skeleton.rounds += 1 + (rounds // 2 if rounds < MANY_ROUNDS else 0)
 
 
 def draws_of_round(skeleton: Skeleton) -> tuple[int, int]:

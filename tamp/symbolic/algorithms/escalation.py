@@ -20,7 +20,7 @@ from tamp.system.deadline import OutOfTime
 
 FAILURES_BEFORE_SECOND_OPINION = 1000
 """Failures of one thing without a success after which the incremental algorithm is asked; doubled
-each time."""
+each time. At least as many as there are operators: it draws for all of them."""
 
 DRAWS_PER_FAILURE = 2
 """Draws that it gets for each of those failures."""
@@ -80,9 +80,10 @@ def escalate(run: Run, escalation: Escalation, drew: bool) -> Result | None:
             return end_result(run, Outcome.EXHAUSTED)
 
     draws = 0
-    if _keeps_failing(run, escalation.failures):
-        draws = DRAWS_PER_FAILURE * escalation.failures
-        escalation.failures *= 2
+    failures = max(escalation.failures, len(run.optimistic.instantiated.operators))
+    if _keeps_failing(run, failures):
+        draws = DRAWS_PER_FAILURE * failures
+        escalation.failures = 2 * failures
     elif escalation.dry_rounds == 0 and _draws_little(run, escalation.wandering_rounds):
         draws = 10 * FEW_DRAWS_PER_ROUND * escalation.wandering_rounds
         escalation.wandering_rounds *= 2

@@ -198,7 +198,12 @@ def _certified_fact_of(run: Run, name: str) -> Fact | None:
 
 
 def bind_skeleton(
-    run: Run, skeleton: Skeleton, tries: int, budget: int, fresh: Set[int] = frozenset()
+    run: Run,
+    skeleton: Skeleton,
+    tries: int,
+    budget: int,
+    fresh: Set[int] = frozenset(),
+    more: Callable[[], int | None] | None = None,
 ) -> dict[int, str] | None:
     """Find values with which the plan holds when it is replayed, see `Binder.bind`.
 
@@ -213,7 +218,7 @@ def bind_skeleton(
             faults.append(fault)
         return fault is None
 
-    values = run.binder.bind(skeleton, tries, budget, fresh, holds=holds)
+    values = run.binder.bind(skeleton, tries, budget, fresh, holds=holds, more=more)
     mistake = next((fault for fault in faults if not fault.expected), None)
     if mistake is not None:
         run.effort.refuted += 1

@@ -56,12 +56,16 @@ class SearchSpace:
         best: The cost of the cheapest known way to each state.
         parents: For each state the one before it on that way, and the operator between them.
         bound: What no plan costs less than, as far as A* knows.
+        first: What the first heuristic says of the initial state, in the lazy searches.
+        progress: Expanded states when an estimate had its last new low, there.
+        endurance: Expanded states without one after which it is given up.
         patience: Expanded states after which, again and again, it is asked whether it is too slow.
         too_slow: What is asked then.
     """
 
     patience = 50
     too_slow: Callable[[], bool] | None = None
+    endurance: int | None = None
 
     def __init__(
         self,
@@ -79,6 +83,8 @@ class SearchSpace:
         self.below = below
         self.audit = audit
         self.bound = 0.0
+        self.first = 0.0
+        self.progress = 0
         self.expanded = 0
         self.evaluated = 0
         self.best: dict[State, float] = {successors.initial: 0.0}
@@ -87,6 +93,8 @@ class SearchSpace:
     def count(self) -> None:
         """Count an expansion; stop at a limit."""
         if self.limit is not None and self.expanded >= self.limit:
+            raise SearchLimitReached(Reason.LIMIT)
+        if self.endurance is not None and self.expanded >= self.progress + self.endurance:
             raise SearchLimitReached(Reason.LIMIT)
         if self.deadline is not None and self.deadline.passed:
             raise SearchLimitReached(Reason.TIME)

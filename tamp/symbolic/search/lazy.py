@@ -90,6 +90,8 @@ class _LazySearch:
         if estimates is None:
             before = None if parent is None else self._successors.closure(parent)
             estimates = self._estimates[state] = self._search.estimate(closed, before)
+            if parent is None:
+                self._search.first = estimates[0].value
         return Expanded(state, cost, estimates, tuple(one.value for one in estimates))
 
     def place(self, node: Expanded, parent: State | None, order: int) -> None:
@@ -109,7 +111,8 @@ class _LazySearch:
         search, s, greedy = self._search, self._successors, self._greedy
         state, cost = node.state, node.cost
         search.count()
-        self.open.boost(node.values)
+        if self.open.boost(node.values):
+            search.progress = search.expanded
         applicable = s.applicable(closed)
         helpful = _helpful(s, state, closed, applicable, node.estimates)
         spent, plateau = self._spent[state], self._plateaus.get(state)

@@ -176,13 +176,17 @@ class OpenLists:
         for entries in self._usual[:1] + [one for one in self._preferred[:1] if one]:
             heappush(entries, (key, self._pushed, cost, state, None, GOAL_ENTRY))
 
-    def boost(self, values: Sequence[float]) -> None:
-        """Boost the lists of preferred operators for each heuristic whose estimate is a new low."""
+    def boost(self, values: Sequence[float]) -> bool:
+        """Boost the lists of preferred operators for each heuristic whose estimate is a new low;
+        say if any is.
+        """
+        lower = False
         for kind, value in enumerate(values):
             if value < self._lowest[kind]:
-                self._lowest[kind] = value
+                self._lowest[kind], lower = value, True
                 for other in self._kinds:
                     self._preferred_turns[other] -= PREFERRED_BOOST
+        return lower
 
 
 def _paid(estimate: Estimate, operator: int) -> float:

@@ -32,6 +32,8 @@ class Result:
         evaluated: States that the heuristics were asked about.
         bound: What no plan costs less than, as far as A* with an admissible heuristic knows; 0
             after other searches.
+        estimate: What the first heuristic says of the initial state, with prices; 0 after searches
+            that are not lazy.
     """
 
     plan: Plan | None
@@ -39,6 +41,7 @@ class Result:
     expanded: int
     evaluated: int
     bound: float = 0.0
+    estimate: float = 0.0
 
 
 SEARCHES: dict[str, Callable[[SearchSpace, float], Plan | None]] = {
@@ -70,6 +73,7 @@ def search(
     weight: float = 5.0,
     price: Price | None = None,
     limit: int | None = None,
+    endurance: int | None = None,
     deadline: Deadline | None = None,
     below: float = math.inf,
     audit: Callable[[], bool] | None = None,
@@ -89,6 +93,7 @@ def search(
             and in the lazy searches where the goal is derived from it); may be infinite. A mapping
             of those that cost something is faster than a function. Nothing by default.
         limit: Most states to expand.
+        endurance: In "wastar", most states to expand without a new low of an estimate.
         deadline: When to give up. It never changes the plan that is found, only whether one is.
         below: What the plan must cost less than: in "wastar" its operators alone, in "astar" with
             prices. Not for the greedy searches, which keep to the first way to each state.
@@ -109,7 +114,9 @@ def search(
     packable = search in ("wastar", "greedy") and fits(names, successors)
 
     def space(heuristics: Sequence[Heuristic] = ()) -> SearchSpace:
-        return SearchSpace(successors, heuristics, limit, deadline, below, audit)
+        made = SearchSpace(successors, heuristics, limit, deadline, below, audit)
+        made.endurance = endurance if search == "wastar" else None
+        return made
 
     def packed(run: SearchSpace) -> Plan | None:
         if search == "greedy" and limit is None:
@@ -140,6 +147,7 @@ def search(
         run.expanded,
         run.evaluated,
         run.bound if ADMISSIBLE.issuperset(names) else 0.0,
+        run.first,
     )
 
 

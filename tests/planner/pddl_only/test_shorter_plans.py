@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from pathlib import Path
+from random import Random
 
 import pytest
 
+from benchmarks.classical_domains import GENERATORS
+from benchmarks.side_by_side import conditions
 from tamp.planner.pddl_only import solve
 from tamp.planner.pddl_only.problem import load_symbolic
 from tamp.symbolic.search.replay import violation
@@ -67,6 +71,40 @@ def test_the_first_plan_stands_where_there_is_no_time_for_another(
 
     monkeypatch.setattr(solve, "search", late)
     assert len(solve.solve_symbolic(four_discs).plan) > 60
+
+
+def test_a_dear_plan_is_worth_more_states(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A lift that stops wherever it can: half of its ways are for nothing."""
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    for file, text in zip((domain, problem), GENERATORS["miconic"](14, Random(1)), strict=True):
+        file.write_text(text)
+    task = load_symbolic(domain, problem)
+    monkeypatch.setattr(solve, "SHORTENING", 1)
+    monkeypatch.setattr(solve, "DEAR", math.inf)
+    greedy = solve.solve_symbolic(task)
+    monkeypatch.setattr(solve, "DEAR", 1.5)
+    cheaper = solve.solve_symbolic(task)
+    assert cheaper.solved and cheaper.cost <= 0.8 * greedy.cost
+    assert violation(task.task, [(o.name, o.arguments) for o in cheaper.plan]) is None
+
+
+def test_a_plan_as_cheap_as_its_estimate_is_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten switches, one after the other: there is nothing to look for."""
+    domain, problem = tmp_path / "domain.pddl", tmp_path / "problem.pddl"
+    for file, text in zip((domain, problem), conditions(10), strict=True):
+        file.write_text(text)
+    searches: list[object] = []
+    found = solve.search
+
+    def noted(*arguments: object, **options: object) -> object:
+        searches.append(options["search"])
+        return found(*arguments, **options)  # pyright: ignore[reportArgumentType]
+
+    monkeypatch.setattr(solve, "search", noted)
+    assert solve.solve_symbolic(load_symbolic(domain, problem)).cost == 11
+    assert searches == ["greedy"]
 
 
 def test_a_large_task_is_left_as_it_is(

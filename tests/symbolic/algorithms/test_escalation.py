@@ -107,6 +107,21 @@ def test_what_fails_and_fails_is_worth_a_second_opinion(asked: Asked, successes:
         assert run.effort.apart_seconds > 0.0
 
 
+def test_where_operators_are_many_more_has_to_fail(asked: Asked) -> None:
+    """The second opinion draws for each of them."""
+    run, skeleton = planned("(put tea)")
+    run.latest, state = skeleton, Escalation(failures=1)
+    operators = run.optimistic.instantiated.operators
+    assert len(operators) > 1
+    for number in range(1, len(operators) + 1):
+        assert not asked and escalate(run, state, True) is None
+        run.knowledge.experience.record(skeleton.nodes[1].fact, Rejection("no"))
+        assert (number, asked) == (number, [])
+    assert escalate(run, state, True) is None
+    assert asked == [DRAWS_PER_FAILURE * len(operators)]
+    assert state.failures == 2 * len(operators)
+
+
 def test_only_what_the_latest_skeleton_rests_on_counts(asked: Asked) -> None:
     run, skeleton = planned("(put tea)")
     run.latest = skeleton

@@ -31,6 +31,16 @@ def test_greedy_searches_know_one_way_to_a_state_and_take_no_limit() -> None:
         search(TASK, search="greedy", below=12.0)
 
 
+def test_a_search_without_progress_is_given_up() -> None:
+    """The limit is one of states since the last new low of an estimate, not of all states."""
+    found = search(TASK, search="wastar", heuristic="ff")
+    assert found.expanded > 2 and found.estimate > 0.0
+    given_up = search(TASK, search="wastar", heuristic="blind", endurance=2)
+    assert given_up.plan is None and given_up.reason is Reason.LIMIT
+    assert given_up.expanded < search(TASK, search="wastar", heuristic="blind").expanded
+    assert search(TASK, search="greedy", heuristic="blind", endurance=2).plan is not None
+
+
 def test_astar_says_what_no_plan_costs_less_than() -> None:
     assert search(TASK, search="astar", heuristic="lmcut").bound == CHEAPEST
     assert 0.0 < search(TASK, search="astar", heuristic="lmcut", limit=1).bound <= CHEAPEST

@@ -37,7 +37,7 @@ def told(result: Result) -> tuple[object, ...]:
     plan = (
         None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
     )
-    return plan, result.reason, result.expanded, result.evaluated
+    return plan, result.reason, result.expanded, result.evaluated, result.estimate
 
 
 def compare(
@@ -68,6 +68,7 @@ def test_random_tasks_with_random_prices(block: int, monkeypatch: pytest.MonkeyP
         name, heuristic = WAYS[seed % len(WAYS)]
         limit = rng.choice((None, None, 3, 20))
         weight = rng.choice((1.0, 2.5, 5.0))
+        endurance = rng.choice((None, 1, 4)) if name == "wastar" else None
         found = compare(
             monkeypatch,
             instantiated,
@@ -76,6 +77,7 @@ def test_random_tasks_with_random_prices(block: int, monkeypatch: pytest.MonkeyP
             heuristic=heuristic,
             limit=limit,
             weight=weight,
+            endurance=endurance,
         )
         plans += found.plan is not None
     assert plans >= 10

@@ -41,6 +41,7 @@ class Binder:
         fresh: Set[int] = frozenset(),
         *,
         holds: Callable[[dict[int, str]], bool] | None = None,
+        more: Callable[[], int | None] | None = None,
     ) -> dict[int, str] | None:
         """Find values for all variables, or None when none were found within the budget.
 
@@ -51,6 +52,8 @@ class Binder:
             budget: Draws in all.
             fresh: The nodes that are to take new values before those that worked.
             holds: Has the last word on values for all variables; what it refuses is not returned.
+            more: Asked where a node has failed whatever the others' values are, for more new draws
+                a visit: it is gone on with there, and the others keep their values. None ends it.
         """
         nodes = skeleton.nodes
         makers = skeleton.makers
@@ -90,8 +93,15 @@ class Binder:
             while (outputs := next(level.candidates, None)) is None:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
-                if not conflict or self.draws - spent_before > budget:
-                    if self.draws == spent_before:
+                spent = self.draws - spent_before
+                if not conflict and spent and more is not None:
+                    raised = more()
+                    if raised is not None:
+                        tries, spent_before = raised, self.draws
+                        level = enter(index)
+                        continue
+                if not conflict or spent > budget:
+                    if not spent:
                         # nothing is left to draw: what is known to fail failed once more
                         for node, instance in self._exhausted_met:
                             self._note(node, instance, False)

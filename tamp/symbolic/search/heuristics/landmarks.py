@@ -24,10 +24,16 @@ class Landmarks:
     A landmark counts as long as it was not true on the way; again when it is false now and is a
     goal, or is needed by all that first achieves a landmark that was not true yet (Richter and
     Westphal, LAMA, 2010).
+
+    Args:
+        successors: The task.
+        relaxation: Its delete relaxation, where that is at hand; it counts steps.
     """
 
-    def __init__(self, successors: Successors) -> None:
-        self._relaxation = relaxation = Relaxation(successors, steps=True)
+    def __init__(self, successors: Successors, relaxation: Relaxation | None = None) -> None:
+        if relaxation is None:
+            relaxation = Relaxation(successors, steps=True)
+        self._relaxation = relaxation
         self._size = len(successors.facts)
         initial = successors.closure(successors.initial)
         relaxed_state = relaxation.relaxed_state(initial)

@@ -40,7 +40,11 @@ def fits(names: Sequence[str], successors: Successors) -> bool:
 
 def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Plan | None:
     """Search as `lazy.lazy` does."""
-    return PackedSearch(search, names, weight).plan()
+    patience = UNLIMITED if search.endurance is None else search.endurance
+    try:
+        return PackedSearch(search, names, weight).plan(patience)
+    except Stalled:
+        raise SearchLimitReached(Reason.LIMIT) from None
 
 
 class Stalled(Exception):
@@ -72,13 +76,13 @@ class PackedSearch:
         self._compiled = compiled
         self._search, self._weight = search, weight
         s, kinds = search.successors, len(names)
-        marks = Landmarks(s) if "landmarks" in names else None
+        relaxation = Relaxation(s, steps=True)
+        marks = Landmarks(s, relaxation) if "landmarks" in names else None
         self._possible = marks is None or marks.possible
 
         self._arena = arena = compiled.Arena(basics.SIZES + 4 * kinds, kinds)
         numbers = [KINDS[name] for name in names]
         self._t = t = pack_task(s, numbers, arena.integers, arena.reals)
-        relaxation = Relaxation(s, steps=True)
         self._r = r = pack_relaxation(s, relaxation, marks, arena.integers, arena.reals)
         self._x = arena.scratch(t, r)
 
@@ -125,7 +129,7 @@ class PackedSearch:
         """
         search = self._search
         if not self._possible:
-            search.evaluated = 1
+            search.evaluated, search.first = 1, math.inf
             s = search.successors
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
         began = self.expanded
@@ -156,6 +160,8 @@ class PackedSearch:
     def _count(self) -> None:
         """Add to the counts of all searches what this one has done since."""
         expanded, evaluated = self.expanded, int(self._ints[basics.EVALUATED])
+        if self._seen[1] == 0 and evaluated > 0:
+            self._search.first = float(self._reals[self._space.values])
         self._search.expanded += expanded - self._seen[0]
         self._search.evaluated += evaluated - self._seen[1]
         self._seen = expanded, evaluated

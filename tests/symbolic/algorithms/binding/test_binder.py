@@ -45,6 +45,30 @@ def test_a_failure_goes_back_to_what_it_depends_on() -> None:
     assert sorted(pose for cup, pose in asked if cup == "mug") == [1, 2, 3, 4]
 
 
+def test_with_more_tries_it_goes_on_where_it_failed() -> None:
+    """The mug's third pose takes three tries; the tea keeps the pose that it has."""
+    asked: list[tuple[str, int]] = []
+
+    def clear(cup: str, pose: int) -> bool:
+        asked.append((cup, pose))
+        return cup == "tea" or pose == 3
+
+    run, skeleton = planned("(and (put tea) (put mug))", clear)
+    more = iter([2, 3])
+    values = run.binder.bind(skeleton, 1, 1000, more=lambda: next(more, None))
+    assert values is not None and asked.count(("tea", 1)) == 1
+    assert [pose for cup, pose in asked if cup == "mug"] == [1, 2, 3]
+    assert next(more, None) is None
+
+
+def test_more_tries_are_asked_for_only_where_something_was_drawn() -> None:
+    """A fifth pose is asked for and there is none: the round after that draws nothing, and ends."""
+    run, skeleton = planned("(put tea)", lambda cup, pose: False)
+    more = iter(range(5, 100))
+    assert run.binder.bind(skeleton, 4, 1000, more=lambda: next(more)) is None
+    assert next(more) == 7 and run.binder.draws == 9
+
+
 def test_the_last_word_is_asked_of_all_values() -> None:
     run, skeleton = planned("(put tea)")
     heard: list[object] = []
