@@ -17,6 +17,7 @@ import time
 from types import FrameType
 from typing import Any, NoReturn
 
+from tamp.system.garbage import collect_hardly_ever
 from tamp.system.process_exit import exit_now
 from tamp.system.process_family import adopt_orphans, die_with, end_orphans, seconds_waited
 
@@ -159,6 +160,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
 
     if os.getpid() != parent:
         die_with(parent)
+    collect_hardly_ever()
     command = getattr(importlib.import_module(module), function)
     _ASKED.at_once = False
     leave_as(_code(command))
