@@ -23,10 +23,10 @@ DEPTH = 0.001
 MOVED, TURNED, SECONDS = 0.03, math.radians(10.0), 1.5
 """A body is settled that moved and turned less than this in so many seconds of simulation."""
 
-REACH = 0.15
+DROP_NEIGHBOURS_M = 0.15
 """Bodies farther away than this play no part in a drop test, metres."""
 
-SLACK = 0.002
+INSIDE_SLACK_M = 0.002
 """`inside`: the body may stick out by this much, metres."""
 
 
@@ -76,10 +76,10 @@ def paper_verdicts(situation: RelationScene, poses: Array) -> list[Verdict]:
             region.box[0, :2],
             region.box[1, :2],
         )
-        too_low, too_high = low[:, 2] < floor - SLACK, high[:, 2] > top + SLACK
-        within = (low[:, :2] >= least - SLACK).all(axis=1) & (high[:, :2] <= most + SLACK).all(
-            axis=1
-        )
+        too_low, too_high = low[:, 2] < floor - INSIDE_SLACK_M, high[:, 2] > top + INSIDE_SLACK_M
+        within = (low[:, :2] >= least - INSIDE_SLACK_M).all(axis=1) & (
+            high[:, :2] <= most + INSIDE_SLACK_M
+        ).all(axis=1)
     else:
         least, most = -region.size[:2] / 2, region.size[:2] / 2
         too_low, too_high = low[:, 2] < -NEAR, low[:, 2] > NEAR
@@ -110,7 +110,9 @@ def drop_verdicts(
         return []
     boxes = [Placed(situation.body.form, pose).box for pose in poses if np.isfinite(pose).all()]
     others = [
-        other for other in situation.others if any(gap(other.box, box) < REACH for box in boxes)
+        other
+        for other in situation.others
+        if any(gap(other.box, box) < DROP_NEIGHBOURS_M for box in boxes)
     ]
     bodies = [situation.support, *others]
     drops.set_up(items(situation.body.form), [(items(body.form), body.matrix) for body in bodies])
@@ -126,11 +128,13 @@ def place_verdict(region: Region, form: BodyGeometry, T_region_body: Array) -> V
     half = region.size[:2] / 2
     if low[2] < -NEAR:
         return Verdict.TOO_LOW
-    if (low[2] > NEAR) if not region.hollow else (high[2] > region.size[2] + SLACK):
+    if (low[2] > NEAR) if not region.hollow else (high[2] > region.size[2] + INSIDE_SLACK_M):
         return Verdict.TOO_HIGH
     centre = T_region_body[:3, :3] @ form.centre_of_mass + T_region_body[:3, 3]
     if region.hollow:
-        good = bool((low[:2] >= -half - SLACK).all() and (high[:2] <= half + SLACK).all())
+        good = bool(
+            (low[:2] >= -half - INSIDE_SLACK_M).all() and (high[:2] <= half + INSIDE_SLACK_M).all()
+        )
     else:
         good = bool((np.abs(centre[:2]) <= half).all())
     if good:

@@ -14,7 +14,7 @@ from numpy.random import Generator as Random
 from grounding.body_geometry import BodyGeometry
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import object_templates
-from grounding.oracles import REACH, ItemOf, Verdict, drop_verdicts
+from grounding.oracles import DROP_NEIGHBOURS_M, ItemOf, Verdict, drop_verdicts
 from grounding.random_poses import (
     afloat,
     on_ground,
@@ -218,7 +218,10 @@ def touchable(scene: SampledScene, pose: Array, items: ItemOf) -> list[tuple[Ite
     their matrices.
     """
     box = Placed(scene.body, pose).box
-    bodies = [scene.stand, *(item for item in scene.placed if gap(item.box, box) < REACH)]
+    bodies = [
+        scene.stand,
+        *(item for item in scene.placed if gap(item.box, box) < DROP_NEIGHBOURS_M),
+    ]
     return [(items(item.form), item.matrix) for item in bodies]
 
 

@@ -14,7 +14,7 @@ from typing import Self
 MOST = 60_000
 """Characters of what a command says that are kept."""
 
-PATIENCE = 0.5
+END_TIMEOUT_S = 0.5
 """Seconds that it may take to end when it is asked to."""
 
 PROGRAMS: Mapping[str, str] = {
@@ -87,11 +87,11 @@ class Runner:
             return
         self._process.terminate()
         try:
-            self._process.wait(PATIENCE)
+            self._process.wait(END_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             with contextlib.suppress(subprocess.TimeoutExpired):
-                self._process.wait(PATIENCE)
+                self._process.wait(END_TIMEOUT_S)
 
     @staticmethod
     def _read(process: subprocess.Popen[bytes], into: bytearray) -> None:

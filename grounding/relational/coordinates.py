@@ -25,7 +25,7 @@ from tamp.geometric.scene.scene import CONTACT_GAP
 CONTAINED = 0.95
 """The share of demonstrations within the rectangle from which on all are thought to be."""
 
-SLACK = 0.002
+BOUND_SLACK_M = 0.002
 """Metres by which a bound may be missed."""
 
 LEVEL, FLAT = 0.003, 0.05
@@ -103,11 +103,11 @@ class RelationalCoordinates:
             level,
             anchor,
             max(offset, CONTACT_GAP) if abs(offset) < LEVEL else offset,
-            bool((sides > -SLACK).mean() >= CONTAINED),
+            bool((sides > -BOUND_SLACK_M).mean() >= CONTAINED),
             least(sides),
             least(np.array([one.balance.min() for one in measured])),
             least(np.array([one.ceiling[0] for one in measured])),
-            min(least(np.array([one.nearest[0] for one in measured])), SLACK),
+            min(least(np.array([one.nearest[0] for one in measured])), BOUND_SLACK_M),
             least(np.array([one.view.steadiness[one.face[0]] for one in measured])),
         )
 
@@ -199,7 +199,7 @@ class RelationalCoordinates:
             measured.nearest,
             measured.view.region.size,
         )
-        constraint_violations(*sizes, bounds, SLACK, missing)
+        constraint_violations(*sizes, bounds, BOUND_SLACK_M, missing)
         return missing
 
     def _share(self, measured: Measures) -> Array:

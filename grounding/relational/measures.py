@@ -14,7 +14,7 @@ from grounding.relation_scene import Placed, Region, RelationScene
 from grounding.separation import Obstacles, separations
 from tamp.geometric.scene.pose import Array
 
-REACH = 0.4
+SURROUNDINGS_M = 0.4
 """Surroundings farther from the region than this are left out, metres."""
 
 
@@ -66,7 +66,7 @@ class RegionFrame:
         matrices = self.T_region_world @ np.array([other.matrix for other in others])
         points = matrices[:, :3, 3]
         away = np.maximum(np.maximum(self._room[0] - points, points - self._room[1]), 0.0)
-        reach = REACH + np.array([other.form.radius for other in others])
+        reach = SURROUNDINGS_M + np.array([other.form.radius for other in others])
         near = (away * away).sum(axis=1) < reach * reach
         return [
             Placed(other.form, matrix)
@@ -180,7 +180,7 @@ class Measures:
     @cached_property
     def nearest(self) -> Array:
         """Return the least separation, at most REACH, shape (n,)."""
-        return self.apart.min(axis=1, initial=REACH)
+        return self.apart.min(axis=1, initial=SURROUNDINGS_M)
 
 
 def upright(tilt: Array) -> Array:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from grounding.layers import dense, layers_of
 from grounding.relational.kernels import describe_poses
-from grounding.relational.measures import REACH, Measures
+from grounding.relational.measures import SURROUNDINGS_M, Measures
 
 POSE, PAIR = 31, 5
 """Features of a pose, and of a pose and one body around it."""
@@ -51,7 +51,7 @@ def features(measured: Measures) -> tuple[NDArray[np.float32], NDArray[np.float3
     around = view.obstacles
     if not around.count:
         return pose, np.tile(np.array([1, 1, 1, 1, 0], np.float32), (len(pose), 1, 1))
-    apart = np.minimum(measured.apart, REACH).astype(np.float32)
+    apart = np.minimum(measured.apart, SURROUNDINGS_M).astype(np.float32)
     over = np.maximum(
         measured.low[:, 2:] - around.high[:, 2], around.low[:, 2] - measured.high[:, 2:]
     )

@@ -34,10 +34,10 @@ from tamp.verification.limits import check_ranges
 WAIT_AFTER_ACTION_S = 0.5
 """Seconds after an action, before it is looked at what came of it."""
 
-STILL = (0.005, 0.05)
+STILL_SPEEDS = (0.005, 0.05)
 """Metres and radians a second: what moves faster is waited for,"""
 
-PATIENCE = 4.0
+MAX_SETTLING_S = 4.0
 """at most this long, seconds."""
 
 MOST = 8
@@ -246,11 +246,11 @@ class _Run:
     def _come_to_rest(self) -> None:
         """Wait for bodies that fall or roll, not for ever."""
         waited = 0.0
-        while waited < PATIENCE and any(
+        while waited < MAX_SETTLING_S and any(
             speed > limit
             for name in self._world.scene.movable
             if name != self._held()
-            for speed, limit in zip(self._world.speed(name), STILL, strict=True)
+            for speed, limit in zip(self._world.speed(name), STILL_SPEEDS, strict=True)
         ):
             self._world.wait(0.25)
             waited += 0.25

@@ -27,7 +27,7 @@ ENDING = (signal.SIGINT, signal.SIGTERM)
 WATCHED = (*ENDING, signal.SIGCHLD)
 """What who watches waits for."""
 
-PATIENCE = 0.8
+END_TIMEOUT_S = 0.8
 """Seconds that the one who works may take to end by itself, those not counted in which it waited
 for a core.
 """
@@ -224,7 +224,10 @@ def _watch(child: int) -> NoReturn:
 
         if number and not killed:
             passed = time.monotonic() - since
-            if passed > PATIENCE_AT_MOST or passed - (seconds_waited(child) - waited) > PATIENCE:
+            if (
+                passed > PATIENCE_AT_MOST
+                or passed - (seconds_waited(child) - waited) > END_TIMEOUT_S
+            ):
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()

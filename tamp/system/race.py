@@ -32,7 +32,7 @@ BEHIND = 10
 are scarce.
 """
 
-STEP = 1000
+SEED_STRIDE = 1000
 """From one run's seed to the next one's."""
 
 
@@ -46,8 +46,8 @@ class RaceResult(Generic[Answer]):
 
 def member_seed(seed: int, number: int) -> int:
     """Return the seed of run `number`, the first being 0: that run alone repeats what it found."""
-    moved = seed + STEP * number
-    return moved if abs(moved) < 2**64 else seed - STEP * number
+    moved = seed + SEED_STRIDE * number
+    return moved if abs(moved) < 2**64 else seed - SEED_STRIDE * number
 
 
 def race(

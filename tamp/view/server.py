@@ -27,7 +27,7 @@ HEADERS = {
 }
 """The page is for whoever opened it, and for no page of others."""
 
-PATIENCE = 10.0
+REQUEST_TIMEOUT_S = 10.0
 """Seconds in which a request has to be told."""
 
 
@@ -121,7 +121,7 @@ class PageServer(LocalServer):
 
 
 class _Handler(BaseHTTPRequestHandler):
-    timeout = PATIENCE
+    timeout = REQUEST_TIMEOUT_S
     server: LocalServer  # pyright: ignore[reportIncompatibleVariableOverride]
 
     def do_GET(self) -> None:

@@ -19,7 +19,7 @@ from tamp.planner.parallel import solve_parallel
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
 from tamp.system.deadline import Deadline
-from tamp.system.race import STEP, RaceResult, Tell, member_seed, race
+from tamp.system.race import SEED_STRIDE, RaceResult, Tell, member_seed, race
 
 Run = Callable[[Tell], Any]
 
@@ -140,7 +140,7 @@ def test_the_runs_leave_even_when_the_one_who_started_them_is_killed() -> None:
 def test_whoever_wins_its_seed_makes_the_plan_again() -> None:
     problem = load_problem("one_object")
     won = solve_parallel(problem, jobs=2, seed=5, accept=lambda solution: solution.seed != 5)
-    assert won.solved and won.seed == member_seed(5, 1) == 5 + STEP
+    assert won.solved and won.seed == member_seed(5, 1) == 5 + SEED_STRIDE
     alone = solve(load_problem("one_object"), seed=won.seed)
     assert (
         plan_text(won).partition('"statistics"')[0] == plan_text(alone).partition('"statistics"')[0]
@@ -153,5 +153,5 @@ def test_a_proof_of_infeasibility_is_an_answer() -> None:
 
 
 def test_seeds_stay_in_range() -> None:
-    assert member_seed(2**64 - 1, 3) == 2**64 - 1 - 3 * STEP
+    assert member_seed(2**64 - 1, 3) == 2**64 - 1 - 3 * SEED_STRIDE
     assert member_seed(7, 0) == 7

@@ -25,7 +25,7 @@ FRONT = 0.05
 ENOUGH = 0.3
 """Share of the best height's chances that makes a lower one good enough."""
 
-STEP, HIGHEST = 0.05, 1.0
+HEIGHT_STEP_M, HIGHEST = 0.05, 1.0
 """Metres: between heights that are tried, and the highest."""
 
 SAMPLES = 200_000
@@ -39,7 +39,7 @@ def on_column(robot: Robot) -> Robot:
     that is a part of its foot; another one stays where it is.
     """
     heights = _hands(robot)
-    raised = np.arange(0.0, HIGHEST - robot.T_base_arm.position[2], STEP)
+    raised = np.arange(0.0, HIGHEST - robot.T_base_arm.position[2], HEIGHT_STEP_M)
     chances = np.array(
         [((heights + up > ON_TABLES[0]) & (heights + up < ON_TABLES[1])).sum() for up in raised]
     )

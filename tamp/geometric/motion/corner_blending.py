@@ -33,8 +33,8 @@ SHARE = (
 HALVINGS = 3  # smaller roundings to try where larger ones are not free
 CHORD = 0.06  # length of the chords of a rounding, of which there are between 2 and 8
 TICK = 0.05  # seconds: a corner is passed unrounded if its jump of velocity takes no longer
-STEP = 0.1  # spacing of the nodes on straight parts, at which the acceleration may change
-MOST = 10  # nodes on one straight part
+NODE_SPACING = 0.1  # spacing of the nodes on straight parts, at which the acceleration may change
+MOST_NODES = 10  # nodes on one straight part
 
 
 @dataclass(frozen=True, eq=False)
@@ -231,7 +231,10 @@ def _straight(
     """Return the part of an edge that belongs to neither corner, with nodes at both ends."""
     u, zero = first.after, np.zeros_like(first.after)
     begin, end = first.blend_length, extent - last.blend_length
-    parts, max_derivative = min(max(math.ceil((end - begin) / STEP), 1), MOST), np.abs(u)
+    parts, max_derivative = (
+        min(max(math.ceil((end - begin) / NODE_SPACING), 1), MOST_NODES),
+        np.abs(u),
+    )
     for i in range(parts + 1):
         offset = end if i == parts else begin + i * ((end - begin) / parts)
         at_end = i == parts and not last.blend_length

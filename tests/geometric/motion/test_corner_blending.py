@@ -11,10 +11,10 @@ import pytest
 from tamp.geometric.motion.corner_blending import (
     CHORD,
     HALVINGS,
-    MOST,
+    MOST_NODES,
+    NODE_SPACING,
     ROUNDING,
     SHARE,
-    STEP,
     Corner,
     blend,
     corners,
@@ -134,8 +134,8 @@ def test_bends_act_within_the_rounding_alone() -> None:
     ).all()
 
 
-@pytest.mark.parametrize(("length", "parts"), [(0.05, 1), (0.45, 5), (7.0, MOST)])
+@pytest.mark.parametrize(("length", "parts"), [(0.05, 1), (0.45, 5), (7.0, MOST_NODES)])
 def test_a_straight_part_has_nodes_a_step_apart_up_to_a_number(length: float, parts: int) -> None:
     rail = blend(corners(np.array([[0.0, 0.0], [length, 0.0]]), PUSH))
     assert len(rail.stations) == parts + 1 and rail.straight.all()
-    assert parts == MOST or np.diff(rail.stations).max() <= STEP + 1e-12
+    assert parts == MOST_NODES or np.diff(rail.stations).max() <= NODE_SPACING + 1e-12

@@ -18,9 +18,6 @@ COMPILE_THRESHOLD = 20_000_000
 """Entries before it is compiled, where that has not been done: half as long as compiling takes,
 since nobody's time is spent on that."""
 
-PATIENCE = 50
-"""States after which a search in plain Python asks whether to begin anew in the compiled loop."""
-
 FOLDER = Path(__file__).resolve().parent
 SOURCES = ("basics", "estimates", "states", "queues", "loops")
 KEPT = ("run", "eliminate")
