@@ -30,10 +30,14 @@ def test_spheres_hold_the_links_and_sliders_have_the_ranges(name: str) -> None:
     looked = 0
     for link in robot.links:
         balls = np.array(told["spheres"].get(link.name, [])).reshape(-1, 4)
-        hulls = [part for part in link.parts if isinstance(part.shape, Hull)]
+        hulls = [
+            part.pose.apply(part.shape.vertices)
+            for part in link.parts
+            if isinstance(part.shape, Hull)
+        ]
         if not len(balls) or not hulls:
             continue
-        corners = np.concatenate([part.pose.apply(part.shape.vertices) for part in hulls])
+        corners = np.concatenate(hulls)
         away = np.linalg.norm(corners[:, None] - balls[:, :3], axis=2) - balls[:, 3]
         assert away.min(axis=1).max() < 1e-4
         looked += 1

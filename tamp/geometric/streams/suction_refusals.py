@@ -16,7 +16,7 @@ def no_seal(body: Body, cup: Suction) -> Rejection:
     across = f"the cup is {2000 * cup.radius:.0f} mm across"
     if len(body.parts) == 1 and _closes_nowhere(body.parts[0].shape, cup.radius):
         what = f"no grasp: no face of {body.name} closes the cup ({across})"
-        return Rejection(what, kind=RejectionKind.TOO_LARGE)
+        return Rejection(what, kind=RejectionKind.NO_GRASP)
     return Rejection(
         f"no suction grasp was found ({across}, a face of {body.name} has to close it and to be "
         "near its centre of mass)",

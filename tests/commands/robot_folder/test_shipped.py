@@ -15,6 +15,8 @@ from tamp.execution.execute import ExecutionOptions, execute
 from tamp.geometric.loading.robots import ROBOTS, SHIPPED
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.pose import Pose
 from tamp.plan.open import open_plan
 from tamp.verification.verify import verify
 
@@ -55,6 +57,22 @@ def test_a_lift_reaches_what_the_arm_alone_does_not() -> None:
     below = replace(robot, upper=(robot.lower[0] + 0.01, *robot.upper[1:]))
     assert len(ArmIK(robot).solve(highest, enough=1)) == 1
     assert len(ArmIK(below).solve(highest, enough=1)) == 0
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_at_home_nothing_is_in_the_floor_however_a_lift_stands(name: str) -> None:
+    robot = ROBOTS[name]()
+    kinematics, looked = Kinematics(robot), 0
+    lifts = [index for index, slides in enumerate(robot.prismatic) if slides]
+    for bound in (robot.lower, robot.home, robot.upper):
+        arm = np.array(robot.home)
+        arm[lifts] = np.array(bound)[lifts]
+        poses = kinematics.link_poses(np.concatenate([np.zeros(3), arm]), robot.opening)
+        for link in (link for link in robot.links if link.parts):
+            low, _ = bounds(link.parts, Pose.from_matrix(poses[link.name]))
+            assert low[2] > 0.0, link.name
+            looked += 1
+    assert looked >= 3 * len(robot.joints)
 
 
 @pytest.mark.slow
