@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -87,11 +88,21 @@ def _regions(
     scene = context.scene
     owners = scene.fixed if carrier is None else (carrier,)
     places = {
-        place.name: place
+        place.name: place if carrier is None else _roofless(place)
         for place in (*scene.surfaces.values(), *scene.cavities.values())
         if place.body in owners
     }
     return {name: place for name, place in places.items() if name in named} or places
+
+
+def _roofless(place: Surface | Cavity) -> Surface | Cavity:
+    """Return a place in which bodies may be of any height: one's own relation need not mean that
+    the box closes over them, and what is over its floor is tested like any body in the way.
+    """
+    if isinstance(place, Surface):
+        return place
+    width, depth, _ = place.size
+    return replace(place, size=(width, depth, math.inf))
 
 
 def _rested(

@@ -89,7 +89,7 @@ def test_left_of_ends_at_the_table() -> None:
         assert relation.classify(scene, pair) < 0.5, pair
 
 
-def solved(name: str) -> Solution:
+def solved(name: str | Path) -> Solution:
     solution = tamp.solve(tamp.load_problem(name, registry=GROUNDINGS), max_time=60.0, seed=0)
     assert solution.solved, solution.explanation
     return solution
@@ -112,6 +112,34 @@ def test_the_table_is_set_as_it_is_meant() -> None:
     x, y = ({name: (table @ pose).position[axis] for name, pose in last.items()} for axis in (0, 1))
     assert x["cup"] < x["fork"] < x["plate"], "as one sees it who stands in front of the table"
     assert abs(y["cup"] - y["plate"]) < 0.1
+
+
+LOW_BOX = """\
+domain: learned
+robot: {model: panda_mobile, base: [0.0, 0.0, 0 deg]}
+room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}
+samplers: {pack: learned}
+bodies:
+  table: {furniture: table, size: [1.2, 0.7, 0.7], at: [1.4, 0.0, 0.0], yaw: -90 deg}
+  crate: {furniture: open_box, size: [0.3, 0.25, 0.07], fixed: false, on: table, at: [0.25, 0.0], mass: 0.6}
+  can:   {cylinder: {radius: 0.03, height: 0.1}, on: table, at: [-0.2, 0.0]}
+goal: (pack can crate)
+"""
+
+
+@pytest.mark.slow
+def test_what_is_packed_may_stand_out_of_the_box(tmp_path: Path) -> None:
+    """Goods were shown that are taller than their box: the relation holds of them."""
+    file = tmp_path / "low.yaml"
+    file.write_text(LOW_BOX)
+    solution = solved(file)
+    judged = verify(plan_document(solution), classifiers=classifiers_of(["pack=learned"]))
+    assert judged.holds and not judged.on_trust, judged.text()
+
+    file.write_text(LOW_BOX.replace("(pack can", "(inside can"))  # which says that it is all within
+    refused = tamp.solve(tamp.load_problem(file, registry=GROUNDINGS), max_time=5.0, seed=0)
+    assert not refused.solved
+    assert "crate has room for 0.06 m" in " ".join(refused.explanation)
 
 
 @pytest.mark.slow
