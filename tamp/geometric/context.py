@@ -137,7 +137,7 @@ class Context:
     @cached_property
     def carrying_up(self) -> Float[Array, " 3"]:
         """Return the direction of up in the tool's frame while the arm is at home, shape (3,)."""
-        return self.kinematics.tool(self.conf(np.zeros(3), self.home))[2, :3]
+        return self.kinematics.tool_plainly(self.conf(np.zeros(3), self.home))[2, :3]
 
     def stands(
         self, T_world_tool: Float[Array, "4 4"], rng: np.random.Generator, count: int

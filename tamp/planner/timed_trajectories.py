@@ -126,7 +126,7 @@ class PlanTimer:
                 self._poses.pop(name, None)
         elif self._held is not None:
             tool = Pose.from_matrix(
-                self._context.kinematics.tool(self._context.conf(self._base, self._arm))
+                self._context.kinematics.tool_plainly(self._context.conf(self._base, self._arm))
             )
             pose = tool @ self._held.T_tool_body
             self._poses[self._held.body] = pose

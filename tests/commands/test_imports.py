@@ -25,7 +25,14 @@ NEVER = (
     "jaxtyping",
 )
 """What no command needs to say what it was asked for."""
-PLANNING = ("pybullet", "mujoco", "numba.np.linalg", "tamp.verification", "tamp.execution.report")
+PLANNING = (
+    "pybullet",
+    "mujoco",
+    "pinocchio",
+    "numba.np.linalg",
+    "tamp.verification",
+    "tamp.execution.report",
+)
 """What a plan of one object can be found without, once the kernels are compiled."""
 HEAVY = (
     "numba",

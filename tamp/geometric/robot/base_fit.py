@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.robot.chain import Chain
-from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 
@@ -33,13 +32,39 @@ _X, _Y = (np.roll(np.eye(3), turns, axis=1) for turns in (2, 1))
 
 def freedom(robot: Robot) -> int:
     """Return in how many directions the arm can move the tool: six, or fewer."""
-    kinematics, rng = Kinematics(robot), np.random.default_rng(0)
-    ranks: list[int] = []
+    chain, rng, most = Chain.of(robot), np.random.default_rng(0), 0
     for _ in range(STATES):
-        q = rng.uniform(np.array(robot.lower), np.array(robot.upper))
-        J = kinematics.jacobian(np.concatenate([np.zeros(3), q]))[:, 3:]
-        ranks.append(int((np.linalg.svd(J, compute_uv=False) > SINGULAR).sum()))
-    return max(ranks)
+        J = _jacobian(chain, rng.uniform(chain.lower, chain.upper))
+        most = max(most, int((np.linalg.svd(J, compute_uv=False) > SINGULAR).sum()))
+        if most == 6:
+            break
+    return most
+
+
+def _jacobian(chain: Chain, q: Float[Array, " n"]) -> Float[Array, "6 n"]:
+    """Compute the Jacobian of the tool, in the base's axes, without pinocchio: a plan for an arm
+    that has all its freedom needs it for nothing else.
+    """
+    T, frames = np.eye(4), []
+    for origin, slides, position in zip(chain.origins, chain.slides, q, strict=True):
+        T = T @ origin
+        frames.append(T)
+        T_joint = np.eye(4)
+        if slides > 0.0:
+            T_joint[2, 3] = position
+        else:
+            cos, sin = math.cos(position), math.sin(position)
+            T_joint[:2, :2] = ((cos, -sin), (sin, cos))
+        T = T @ T_joint
+
+    tool, J = (T @ chain.T_flange_tool)[:3, 3], np.zeros((6, len(q)))
+    for k, frame in enumerate(frames):
+        axis = frame[:3, 2]
+        if chain.slides[k] > 0.0:
+            J[:3, k] = axis
+        else:
+            J[:3, k], J[3:, k] = np.cross(axis, tool - frame[:3, 3]), axis
+    return J
 
 
 class BaseFit:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from tamp.geometric.scene.pose import Array, Pose
 
 if TYPE_CHECKING:
     from jaxtyping import Float
+
+Rows: TypeAlias = list[list[float]]
+"""A pose, row by row."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +97,20 @@ class Kinematics:
         of.library.forwardKinematics(of.model, of.data, conf)
         return of.library.updateFramePlacement(of.model, of.data, of.tool).homogeneous
 
+    def tool_plainly(self, conf: Float[Array, " conf"]) -> Float[Array, "4 4"]:
+        """Compute T_world_tool, shape (4, 4), as `tool` does to the last bit, without pinocchio:
+        for few poses, since it takes a hundred microseconds.
+        """
+        cos, sin = math.cos(conf[2]), math.sin(conf[2])
+        pose = [[cos, -sin, 0.0, conf[0]], [sin, cos, 0.0, conf[1]], [0.0, 0.0, 1.0, 0.0]]
+        origin = self.robot.T_base_arm
+        for joint, position in zip(self.robot.joints, conf[3:].tolist(), strict=True):
+            move = _slid if joint.kind == "prismatic" else _turned
+            pose = _product(pose, move((origin @ joint.origin).matrix.tolist(), position))
+            origin = Pose()
+        T_flange_tool = (self.robot.T_flange_hand @ self.robot.T_hand_tool).matrix
+        return np.array([*_product(pose, T_flange_tool.tolist()), [0.0, 0.0, 0.0, 1.0]])
+
     def arm_tool(self, arm: Float[Array, " joints"]) -> Float[Array, "4 4"]:
         """Compute T_base_tool, shape (4, 4), at joint positions (n,)."""
         return self.tool(np.concatenate([(0.0, 0.0, 0.0), arm]))
@@ -111,3 +128,29 @@ def base_matrix(base: Float[Array, " coordinates"]) -> Float[Array, "4 4"]:
     """Return T_world_base (4, 4) of a base pose x, y, yaw, or of a configuration."""
     cos, sin = math.cos(base[2]), math.sin(base[2])
     return np.array([[cos, -sin, 0, base[0]], [sin, cos, 0, base[1]], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+
+
+def _product(A: Rows, B: Rows) -> Rows:
+    """Multiply two poses, each of three rows at least, adding in Eigen's order: two rows at once
+    from the left, the third by halves.
+    """
+    product = []
+    for r, (a, b, c, shift) in enumerate(A[:3]):
+        terms = [(a * B[0][k], b * B[1][k], c * B[2][k]) for k in range(4)]
+        sums = [x + (y + z) if r == 2 else (x + y) + z for x, y, z in terms]
+        product.append([*sums[:3], sums[3] + shift])
+    return product
+
+
+def _turned(T: Rows, angle: float) -> Rows:
+    """Turn a pose about its z axis; the new y axis is the cross product of the others."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    x = [cos * row[0] + sin * row[1] for row in T[:3]]
+    z = [row[2] for row in T[:3]]
+    y = [z[r - 2] * x[r - 1] - z[r - 1] * x[r - 2] for r in range(3)]
+    return [[x[r], y[r], z[r], T[r][3]] for r in range(3)]
+
+
+def _slid(T: Rows, way: float) -> Rows:
+    """Move a pose along its z axis."""
+    return [[*row[:3], row[3] + row[2] * way] for row in T[:3]]

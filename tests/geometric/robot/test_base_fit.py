@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
+from tamp.geometric.robot import base_fit
 from tamp.geometric.robot.base_fit import SHIFT, TURN, BaseFit, freedom
+from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics, base_matrix
 from tamp.geometric.robot.robot import Robot
@@ -39,6 +41,15 @@ def desk_arm() -> Robot:
 @pytest.mark.parametrize("name", ROBOTS)
 def test_shipped_arms_move_the_tool_in_all_directions(name: str) -> None:
     assert freedom(ROBOTS[name]()) == 6
+
+
+@pytest.mark.parametrize("name", sorted(ROBOTS))
+def test_directions_are_told_by_pinocchios_jacobian(name: str) -> None:
+    robot = ROBOTS[name]()
+    chain, kinematics, rng = Chain.of(robot), Kinematics(robot), np.random.default_rng(1)
+    for q in rng.uniform(robot.lower, robot.upper, (10, len(robot.home))):
+        J = kinematics.jacobian(np.concatenate([np.zeros(3), q]))[:, 3:]
+        assert np.abs(base_fit._jacobian(chain, q) - J).max() < 1e-12
 
 
 def test_an_arm_of_five_joints_lacks_one() -> None:
