@@ -90,3 +90,18 @@ def test_it_solves_a_problem_that_is_judged_and_carried_out(
     report = verify(plan)
     assert report.holds, report.text()
     assert execute(open_plan(plan), ExecutionOptions(grasp="constraint")).reached
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
+    engine: str, tmp_path: Path
+) -> None:
+    solution = tamp.solve(
+        tamp.load_problem("one_object", robot="ur5_suction"), max_time=60.0, seed=0
+    )
+    assert solution.solved
+    tamp.write_plan(solution, tmp_path / "plan.json")
+    assert verify(tmp_path / "plan.json", engine=engine).holds
+    stored = open_plan(tmp_path / "plan.json")
+    assert execute(stored, ExecutionOptions(grasp="friction", engine=engine)).reached
