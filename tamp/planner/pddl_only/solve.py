@@ -46,6 +46,9 @@ FOR_DEAR = 5
 ENDURANCE = 2
 """States without progress after which that is given up, for each action of the first plan."""
 
+FEWEST = 2
+"""States for each action of the first plan below which no search for another one is begun."""
+
 WEIGHTS = (2.0, 5.0)
 """Of the estimates in the search for a shorter plan: the next where the last has found none."""
 
@@ -231,7 +234,7 @@ def _shortened(
         endurance = max(ENDURANCE * length, limits[WEIGHTS[1]])
 
     for weight, limit in limits.items():
-        if limit < length:
+        if limit < FEWEST * length:
             break
         try:
             better = search(

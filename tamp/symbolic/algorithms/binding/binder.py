@@ -94,19 +94,13 @@ class Binder:
                 conflict = level.conflict | level.culprits
                 conflict.discard(index)
                 spent = self.draws - spent_before
-                if not conflict and spent and more is not None:
-                    raised = more()
-                    if raised is not None:
-                        tries, spent_before = raised, self.draws
-                        level = enter(index)
-                        continue
+                raised = None if more is None or conflict or not spent else more()
+                if raised is not None:
+                    tries, spent_before = raised, self.draws
+                    level = enter(index)
+                    continue
                 if not conflict or spent > budget:
-                    if not spent:
-                        # nothing is left to draw: what is known to fail failed once more
-                        for node, instance in self._exhausted_met:
-                            self._note(node, instance, False)
-                    if not conflict:
-                        self._evaluate_remaining_tests(nodes, index)
+                    self._note_end(nodes, None if conflict else index, spent)
                     return None
 
                 target = max(conflict)
@@ -118,6 +112,17 @@ class Binder:
 
             levels.take(index, outputs)
             values.update(zip(nodes[index].outputs, outputs, strict=True))
+
+    def _note_end(self, nodes: Sequence[Node], failed: int | None, spent: int) -> None:
+        """Note what is learned from values that were not found: nothing is left to draw, or a node
+        failed whatever the others' values are.
+        """
+        if not spent:
+            # what is known to fail failed once more
+            for node, instance in self._exhausted_met:
+                self._note(node, instance, False)
+        if failed is not None:
+            self._evaluate_remaining_tests(nodes, failed)
 
     def _evaluate_remaining_tests(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
