@@ -14,6 +14,7 @@ from tamp.system import guard
 from tamp.system.command_line import BAD_INPUT as BAD_INPUT
 from tamp.system.command_line import INTERRUPTED as INTERRUPTED
 from tamp.system.command_line import as_command
+from tamp.system.deadline import STANDSTILL
 from tamp.system.outputs import check_writable
 from tamp.system.progress import Progress
 
@@ -51,6 +52,7 @@ def run(shown: Progress, arguments: list[str], started: float | None = None) -> 
     shown.quiet = options.quiet or options.json
 
     _check_outputs_writable(options)
+    STANDSTILL.told = shown.compiling  # to import the planner may compile kernels
     budget = Budget(options.time, began)
     solved = (
         _solve_pddl(options, budget, shown)
@@ -80,9 +82,6 @@ def _solve_pddl(options: Arguments, budget: Budget, shown: Progress) -> bool | N
 
 def _solve_scene(options: Arguments, budget: Budget, shown: Progress) -> bool | None:
     """Plan a problem with a scene."""
-    from tamp.system import compilation
-
-    compilation.tell(shown.compiling)  # to import the planner may compile kernels
     from tamp.commands.solve_scene import solve_scene
     from tamp.commands.solve_values import Request
 

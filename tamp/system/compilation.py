@@ -33,9 +33,6 @@ from tamp.system.quick_typing import (
     type_operators_once,
 )
 
-Told = Callable[[int], None]
-"""Called with the number of functions compiled so far, whenever another one begins."""
-
 NOWHERE = (
     "compiled kernels cannot be kept: {why}. They are compiled anew in each run; "
     "NUMBA_CACHE_DIR names a folder"
@@ -50,7 +47,6 @@ class _Compiling(event.Listener):
     """
 
     def __init__(self) -> None:
-        self.told: Told | None = None
         self.count = 0
         self.collects = False
         self.said = False
@@ -60,8 +56,8 @@ class _Compiling(event.Listener):
             self.collects = gc.isenabled()
             gc.disable()
         STANDSTILL.begin()
-        if self.told is not None:
-            self.told(self.count)
+        if STANDSTILL.told is not None:
+            STANDSTILL.told(self.count)
         self.count += 1
 
     def on_end(self, event: event.Event) -> None:
@@ -85,11 +81,6 @@ list_variables_quickly()
 measure_types_once()
 tell_only_listeners()
 load_without_compiler()
-
-
-def tell(told: Told | None) -> None:
-    """Have somebody told of the progress of compiling; only one is."""
-    _COMPILING.told = told
 
 
 def njit(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 
 
@@ -15,11 +16,14 @@ class Standstill:
     Attributes:
         depth: How many of those who stopped the clock have not let it go on.
         total: Seconds for which it stood still before `since`.
+        told: Called with the number of functions compiled so far, whenever another one begins; only
+            one is told.
     """
 
     depth: int = 0
     total: float = 0.0
     since: float = 0.0
+    told: Callable[[int], None] | None = None
 
     def begin(self) -> None:
         """Stop the clock, or keep it stopped."""

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -15,7 +14,7 @@ from tamp.planner.pddl_only.solve import SymbolicSolution, refutation, solve_sym
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.search import Plan, Reason, search
-from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.deadline import Deadline, OutOfTime, counted
 from tamp.system.interrupts import Interrupter
 
 LADDER = (
@@ -62,7 +61,7 @@ def optimize_symbolic(
             last = name == "astar"
             within = deadline if last else Deadline(SHARE * deadline.left())
             while best.bound < best.cost:
-                started = time.perf_counter()
+                started = counted()
                 found = search(
                     instantiated,
                     search=name,
@@ -71,9 +70,7 @@ def optimize_symbolic(
                     deadline=within,
                     below=best.cost,
                 )
-                best = _counted(
-                    best, found.expanded, found.evaluated, time.perf_counter() - started
-                )
+                best = _counted(best, found.expanded, found.evaluated, counted() - started)
 
                 if refutation(problem.task, found.plan) is not None:
                     best = replace(best, refuted=best.refuted + 1)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field, replace
 
 from tamp.errors import InputError
@@ -18,7 +17,7 @@ from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
 from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
-from tamp.system.deadline import Deadline, OutOfTime
+from tamp.system.deadline import Deadline, OutOfTime, counted
 from tamp.system.garbage import infrequent_collection
 from tamp.system.interrupts import Interrupter
 
@@ -171,10 +170,10 @@ def solve_symbolic(
 def _solve(
     problem: SymbolicProblem, name: str, heuristic: str, deadline: Deadline, seed: int
 ) -> SymbolicSolution:
-    started = time.perf_counter()
+    started = counted()
     task = problem.task
     instantiated = instantiate(task)
-    ready = time.perf_counter()
+    ready = counted()
     refuted: list[str] = []
 
     for way in ((name, heuristic), *OTHERS):
@@ -188,7 +187,7 @@ def _solve(
     else:
         found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
 
-    done = time.perf_counter()
+    done = counted()
     outcome = (
         Outcome.SOLVED if found.plan is not None or found.reason is None else OUTCOMES[found.reason]
     )

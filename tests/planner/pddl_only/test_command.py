@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,10 @@ from tamp.commands.solve import BAD_INPUT, NO_PLAN, SOLVED, run
 from tamp.commands.verify import main as judge
 from tamp.errors import InputError
 from tamp.planner.pddl_only.parallel import portfolio
+from tamp.symbolic.pddl.structs import Task
+from tamp.symbolic.search.instantiation.instantiator import instantiate
+from tamp.symbolic.search.operators import InstantiatedTask
+from tamp.system.deadline import STANDSTILL
 from tamp.verification.verify import verify
 
 DOMAIN = """\
@@ -274,3 +279,23 @@ def test_cheaper_plans_are_looked_for_until_one_is_the_cheapest(
     lines = capsys.readouterr().out.splitlines()
     assert any("no plan below" in line and "gap" in line for line in lines)
     assert any("cost 9 (optimal)" in line for line in lines)
+
+
+def test_kernels_that_are_compiled_are_told_of_and_are_no_time_of_the_search(
+    files: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The clock stands still for a hundred seconds while the task is instantiated."""
+    monkeypatch.setattr(STANDSTILL, "total", STANDSTILL.total)
+    monkeypatch.setattr(STANDSTILL, "told", None)
+
+    def compiled(task: Task) -> InstantiatedTask:
+        assert STANDSTILL.told is not None
+        STANDSTILL.told(0)
+        STANDSTILL.total += 100.0
+        return instantiate(task)
+
+    monkeypatch.setattr("tamp.planner.pddl_only.solve.instantiate", compiled)
+    assert run(["d.pddl", "p.pddl", "--time", "50"]) == SOLVED
+    told = capsys.readouterr()
+    assert "compiling kernels" in told.err
+    assert re.search(r"^Solved in -\d+\.\d+ s", told.out, re.MULTILINE), told.out
