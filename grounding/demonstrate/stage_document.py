@@ -36,6 +36,7 @@ def stage_document(stage: Stage, number: int) -> dict[str, Any]:
     yaw = viewer_yaw(scene, stage.arguments)
     target, radius = _framed(stage)
     stand = stand_of(scene, stage.arguments)
+
     return {
         "number": number,
         "arguments": list(stage.arguments),

@@ -144,4 +144,5 @@ def test_every_robot_is_complete(name: str) -> None:
     robot = ROBOTS[name]()
     assert robot.name == name and robot.urdf.is_file()
     assert robot.links[0].name == "base"
-    assert [link.name for link in robot.links[-2:]] == [finger.child for finger in robot.fingers]
+    grasping = [finger.child for finger in robot.fingers] or [robot.hand]
+    assert [link.name for link in robot.links[-len(grasping) :]] == grasping
