@@ -211,6 +211,7 @@ def _furniture() -> Iterator[Measure]:
             words = f"from the {side} edge of the furniture"
             yield _mm(f"furniture: {side} edge", 0.012, 0.8, "absolute", words)
         yield _mm(f"world: {axis}", 0.012, 5.0, "absolute", f"{axis} in the world")
+
     yield _mm(
         "furniture: any edge", 0.012, 0.8, "absolute", "from the nearest edge of the furniture"
     )

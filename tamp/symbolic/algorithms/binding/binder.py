@@ -101,12 +101,7 @@ class Binder:
                         level = enter(index)
                         continue
                 if not conflict or spent > budget:
-                    if not spent:
-                        # nothing is left to draw: what is known to fail failed once more
-                        for node, instance in self._exhausted_met:
-                            self._note(node, instance, False)
-                    if not conflict:
-                        self._evaluate_remaining_tests(nodes, index)
+                    self._note_failure(nodes, index, spent, final=not conflict)
                     return None
 
                 target = max(conflict)
@@ -118,6 +113,15 @@ class Binder:
 
             levels.take(index, outputs)
             values.update(zip(nodes[index].outputs, outputs, strict=True))
+
+    def _note_failure(self, nodes: Sequence[Node], failed: int, spent: int, *, final: bool) -> None:
+        """Note that a node failed after so many draws; `final`: whatever the others' values are."""
+        if not spent:
+            # nothing is left to draw: what is known to fail failed once more
+            for node, instance in self._exhausted_met:
+                self._note(node, instance, False)
+        if final:
+            self._evaluate_remaining_tests(nodes, failed)
 
     def _evaluate_remaining_tests(self, nodes: Sequence[Node], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
