@@ -116,6 +116,7 @@ def stream_parts(words: Words, carries: bool) -> list[str]:
     lines = [line for one in _generators(words, carries) for line in one.lines(words)]
     if not words.tells:
         return [*lines, *_settling(words)]
+
     proposed = words.certified
     if len(words.kinds) == 1:
         proposed = f"(and (pose {words.posed}) {words.wanted})"
