@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tamp
+from tamp.commands.robot import main
 from tamp.commands.robot_folder.check import against_physics
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.execution.execute import ExecutionOptions, execute
@@ -92,3 +93,12 @@ def test_it_solves_a_problem_that_is_judged_and_carried_out(
     report = verify(plan)
     assert report.holds, report.text()
     assert execute(open_plan(plan), ExecutionOptions(grasp="constraint")).reached
+
+
+@pytest.mark.parametrize("name", ["panda_fixed", "two_pandas"])
+def test_a_robots_folder_is_checked_with_all_its_arms(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", name]) == 0
+    joints = " + ".join(["7"] * len(ROBOTS[name]().arms))
+    assert f"{name}: {joints} joints, fixed base, sound" in capsys.readouterr().out
