@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tamp
+from tamp.commands.robot import main
 from tamp.commands.robot_folder.check import against_physics
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.execution.execute import ExecutionOptions, execute
@@ -25,6 +26,8 @@ def problem_for(name: str, size: str) -> str:
     robot = ROBOTS[name]()
     if robot.suction is not None and size == "four_objects":
         return "parcels"  # no mug: what is open closes no cup
+    if robot.beside:
+        return {"one_object": "two_arms_handover", "four_objects": "two_arms_tables"}[size]
     return f"bench_{size}" if robot.drive == "fixed" else size
 
 
@@ -105,3 +108,12 @@ def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     assert verify(tmp_path / "plan.json", engine=engine).holds
     stored = open_plan(tmp_path / "plan.json")
     assert execute(stored, ExecutionOptions(grasp="friction", engine=engine)).reached
+
+
+@pytest.mark.parametrize("name", ["panda_fixed", "two_pandas"])
+def test_a_robots_folder_is_checked_with_all_its_arms(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", name]) == 0
+    joints = " + ".join(["7"] * len(ROBOTS[name]().arms))
+    assert f"{name}: {joints} joints, fixed base, sound" in capsys.readouterr().out
