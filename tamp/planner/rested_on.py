@@ -1,4 +1,4 @@
-"""What a relation of the user's own leaves unsaid: that its poses rest on the surface it names."""
+"""Completion of streams of own relations: their poses rest on the surface that they name."""
 
 from __future__ import annotations
 
