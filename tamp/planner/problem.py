@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +15,14 @@ from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
 from tamp.geometric.motion.planners import COMPILED, PLANNERS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
+from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import Classifier
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.stability.hulls import prepare
 from tamp.geometric.values import Grasp
 from tamp.planner.own_relations import decided
 from tamp.planner.problem_files import ProblemFiles, parse_task, read_files
+from tamp.planner.rested_on import saying_where_poses_rest
 from tamp.planner.served import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
 from tamp.planner.wanted_relations import unasked_streams
@@ -122,6 +124,9 @@ def load_problem(
     start, goal = parse_task(files, holding)
 
     served = Served.of(files.loaded, samplers or {}, groundings or {}, registry or {})
+    own = [name for name in served.generators if name not in SAMPLERS]
+    said = saying_where_poses_rest(files.streams, files.domain, own, functions or {})
+    files = replace(files, streams=said)
     context = _context(files, served, steering, planner, holding)
     if scene is None:  # what is seen may touch
         check_overlaps(files.loaded)
