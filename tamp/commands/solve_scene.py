@@ -12,7 +12,8 @@ from tamp.commands.solve_verdict import closing_lines, judge_text
 from tamp.errors import InputError
 from tamp.geometric.samplers.choice import sampler_choices, sampler_files
 from tamp.geometric.samplers.python_file import given_by_files
-from tamp.plan.write import plan_text, summary_document, write_plan
+from tamp.plan.summary import summary_document
+from tamp.plan.write import plan_text, write_plan
 from tamp.planner.parallel import solve_parallel
 from tamp.planner.problem import load_problem
 from tamp.planner.report import headline, improvement, summary

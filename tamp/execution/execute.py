@@ -62,10 +62,15 @@ def execute(stored: PlanBundle, execution_options: ExecutionOptions | None = Non
     began = time.monotonic()
     chosen = execution_options or ExecutionOptions()
     scene = stored.loaded.scene
+    lasting = chosen.replanner is not None and bool(stored.robot.beside)
+    if lasting:
+        chosen = replace(chosen, replanner=None)
+
     check_ranges(stored.plan, stored.robot, scene.room)
     plan, cut = without_pauses(stored.plan)
     stored = replace(stored, plan=plan)
     notes = (f"{cut:,.0f} s of pauses in the plan were left out",) if cut else ()
+    notes += ("a plan of several arms is carried out as it is, whatever comes",) if lasting else ()
     engine = chosen.engine or default_engine()
     with (
         open_actuated(scene, stored.robot, name=engine) as world,
@@ -241,7 +246,8 @@ class _Run:
         words = {name.lower() for name in poses_expected}
         facts = frozenset(fact for fact in expected.facts if fact[1] in words)
         facts |= self._own.missed(truth, self._held(), expected)
-        return list(deviations(poses_expected, expected.held, facts, seen, active, new))
+        held = expected.held_by(world.arms[world.used].arm)
+        return list(deviations(poses_expected, held, facts, seen, active, new))
 
     def _come_to_rest(self) -> None:
         """Wait for bodies that fall or roll, not for ever."""

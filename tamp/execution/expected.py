@@ -71,16 +71,19 @@ class Expected:
 
     @property
     def held(self) -> tuple[str, Array] | None:
-        """Return the body in the hand and its T_tool_body."""
-        for terms in self.state.all("holding"):
-            value = self.plan.values.get(terms[-1])
-            if (
-                len(terms) == 2
-                and terms[0] in self._bodies
-                and value is not None
-                and isinstance(value.data, Hold)
-            ):
-                return self._bodies[terms[0]], value.data.T_tool_body
+        """Return the body in the hand, any hand, and its T_tool_body."""
+        return self.held_by(None)
+
+    def held_by(self, arm: str | None) -> tuple[str, Array] | None:
+        """Return the body in the hand of an arm, and its T_tool_body; of any where the domain has
+        no arms.
+        """
+        for *of, body, grasp in (terms for terms in self.state.all("holding") if len(terms) > 1):
+            value = self.plan.values.get(grasp)
+            if of not in ([], [arm]) and arm is not None:
+                continue
+            if body in self._bodies and value is not None and isinstance(value.data, Hold):
+                return self._bodies[body], value.data.T_tool_body
         return None
 
     @property

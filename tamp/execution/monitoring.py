@@ -59,18 +59,16 @@ class ContactMonitor:
     def unwanted(self) -> tuple[ContactEvent, ...]:
         """Return the unwanted contacts at the action's end.
 
-        A body may touch what it touches before or after the action: that is what it rests on. The
-        hand may touch what it handles.
+        A body may touch what it touches before or after the action: that is what it rests on. A
+        hand may touch what it handles, and what it holds already.
         """
         borne = self._before | frozenset(self.world.touches())
         robot = self.world.robot_links
         found: list[ContactEvent] = []
         for (first, second), force in sorted(self.touches.items()):
             if first in robot:
-                fine = second == self.active and first in (
-                    *self.world.finger_links,
-                    self.world.hand_link,
-                )
+                held = second == self.active or (first, second) in self._before
+                fine = held and first in self.world.grippers
             else:
                 fine = (first, second) in borne or first == FLOOR_NAME == second
             if not fine and force >= FELT:

@@ -58,6 +58,7 @@ class TrajectoryPlayer:
             event: Called once at that share `at` of the segment's time.
             guard: The base stops when this body is not between the fingers any more.
         """
+        self._world.use(segment.arm)
         if segment.part == "gripper":
             self._finger(segment, body, watch)
             return True
@@ -88,7 +89,7 @@ class TrajectoryPlayer:
         guard: str | None,
     ) -> bool:
         world = self._world
-        first = 0 if segment.part == "base" else 3
+        first = 0 if segment.part == "base" else world.joints.start
         columns = range(first, first + segment.positions.shape[1])
 
         lasts = float(segment.times[-1])

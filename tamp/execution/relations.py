@@ -51,7 +51,7 @@ class Own:
         """Observe what the classifiers say of what is seen, by relation; `at` names the poses of
         bodies that stand.
         """
-        scene = moved(truth.scene, {}, held)
+        scene = moved(truth.scene, {}, () if held is None else (held,))
         facts = expected.plan.initial
         return {
             name: observe(

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tamp.export.trajectory import BASE_JOINTS, Stretch, TimedAction
+from tamp.export.trajectory import Stretch, TimedAction, joints_of
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import PlanFile
@@ -27,7 +27,7 @@ def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> s
         "format": "tamp-trajectory",
         "version": 1,
         "robot": plan.robot,
-        "joints": {"base": BASE_JOINTS, "arm": _names(robot)[0], "gripper": _names(robot)[1]},
+        "joints": joints_of(robot),
         "duration": plan.duration,
         "actions": [
             {
@@ -47,8 +47,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     """Format the trajectory as CSV, one row a sample with all joints, those that stand still too;
     the columns of velocities begin with v_.
     """
-    arm, fingers = _names(robot)
-    joints = (*BASE_JOINTS, *arm, *fingers)
+    joints = [name for names in joints_of(robot).values() for name in names]
     column = {name: at for at, name in enumerate(joints)}
     initial = _start(plan, robot)
     file = io.StringIO()
@@ -120,12 +119,6 @@ FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
 """What a plan's trajectories can be written as."""
 
 
-def _names(robot: Robot) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    return tuple(joint.name for joint in robot.joints), tuple(
-        finger.name for finger in robot.fingers
-    )
-
-
 def _start(plan: PlanFile, robot: Robot) -> Array:
     """Return all joints before the first action: each part stands where its first segment begins,
     if it ever moves.
@@ -138,15 +131,19 @@ def _start(plan: PlanFile, robot: Robot) -> Array:
     ]
     confs = [value.data for value in places if value is not None and value.type == "base-conf"]
     base = confs[0] if confs else np.zeros(3)
-    arm, opening = np.array(robot.home), robot.opening
+
+    arms = {arm.arm: np.array(arm.home) for arm in robot.arms}
+    openings = {arm.arm: arm.opening for arm in robot.arms}
     segments = [segment for action in plan.actions for segment in action.segments]
     for segment in reversed(segments):
-        opening = float(segment.opening[0])
+        name = segment.arm or robot.arm
+        openings[name] = float(segment.opening[0])
         if segment.part == "base":
             base = segment.positions[0]
         elif segment.part == "arm":
-            arm = segment.positions[0]
-    return np.concatenate([base, arm, np.full(len(robot.fingers), opening / 2)])
+            arms[name] = segment.positions[0]
+    fingers = (np.full(len(arm.fingers), openings[arm.arm] / 2) for arm in robot.arms)
+    return np.concatenate([base, *arms.values(), *fingers])
 
 
 def _stretch(stretch: Stretch) -> dict[str, Any]:

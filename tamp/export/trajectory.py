@@ -22,7 +22,7 @@ class Stretch:
     """One part of the robot moving, from rest to rest, while the others stand still.
 
     Attributes:
-        part: "base", "arm" or "gripper".
+        part: "base", "arm" or "gripper"; of several arms "left_arm", "left_gripper" and so on.
         joints: Names of the joints that move.
         times: Seconds from the plan's start, shape (n,), increasing.
         positions: Metres and radians, shape (n, joints), linear in between.
@@ -52,19 +52,33 @@ class TimedAction:
     stretches: tuple[Stretch, ...]
 
 
+def joints_of(robot: Robot) -> dict[str, tuple[str, ...]]:
+    """Return the names of the joints of each part, in order."""
+    names: dict[str, tuple[str, ...]] = {"base": BASE_JOINTS}
+    for arm in robot.arms:
+        names[part_of(robot, "arm", arm.arm)] = tuple(joint.name for joint in arm.joints)
+    for arm in robot.arms:
+        names[part_of(robot, "gripper", arm.arm)] = tuple(finger.name for finger in arm.fingers)
+    return names
+
+
+def part_of(robot: Robot, part: str, arm: str | None) -> str:
+    """Name a part of a robot, of several arms that of the one meant."""
+    if part == "base" or not robot.beside:
+        return part
+    return f"{arm or robot.arm}_{part}"
+
+
 def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
     """Time the plan's motions from the plan's start."""
-    joints = {
-        "base": BASE_JOINTS,
-        "arm": tuple(joint.name for joint in robot.joints),
-        "gripper": tuple(finger.name for finger in robot.fingers),
-    }
+    joints = joints_of(robot)
     actions: list[TimedAction] = []
     for action in plan.actions:
         clock = action.start
         stretches: list[Stretch] = []
         for segment in action.segments:
-            stretches.append(_stretch(segment, joints[segment.part], clock))
+            part = part_of(robot, segment.part, segment.arm)
+            stretches.append(_stretch(segment, part, joints[part], clock))
             clock += float(segment.times[-1])
         actions.append(
             TimedAction(
@@ -74,12 +88,14 @@ def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
     return tuple(actions)
 
 
-def _stretch(segment: StoredSegment, joints: tuple[str, ...], clock: float) -> Stretch:
+def _stretch(
+    segment: StoredSegment, part: str, joints: tuple[str, ...], clock: float
+) -> Stretch:  # fmt: skip
     positions = segment.positions
     if segment.part == "gripper":  # each finger stands at half the opening
         positions = np.repeat(segment.opening[:, None] / 2, len(joints), axis=1)
     return Stretch(
-        part=segment.part,
+        part=part,
         joints=joints,
         times=clock + segment.times,
         positions=positions,

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,20 +18,24 @@ from tamp.geometric.collision.hand_collisions import HandCollisions
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
 from tamp.geometric.motion.planners import COMPILED
+from tamp.geometric.robot.arms import Posture, beside
 from tamp.geometric.robot.base_fit import BaseFit, freedom
 from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.reachability import Reachability
-from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.robot import Link, Robot
+from tamp.geometric.robot.states import arm_of
 from tamp.geometric.samplers.mixture import Mixture
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Part, Scene
 from tamp.geometric.stability.stable_poses import StableFaces, stable_faces_of
-from tamp.geometric.values import Grasp, Load
+from tamp.geometric.values import Grasp, Load, Stance
 
 if TYPE_CHECKING:
     from jaxtyping import Float
+
+NO_OTHERS: Mapping[str, Stance] = MappingProxyType({})
 
 
 @dataclass
@@ -47,6 +52,7 @@ class Context:
         planner: Which sampling-based planner moves arm and base, one of `planners.PLANNERS`.
         heights: How high the hand reaches, metres, at the places where `streams.heights` measured
             it.
+        solver: Inverse kinematics of the arm, where another context has it.
         footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
             whatever stands on them must have its centre of mass, metres.
     """
@@ -57,6 +63,7 @@ class Context:
     steering: str = "se2"
     holding: Grasp | None = None
     planner: str = COMPILED
+    solver: ArmIK | None = None
     heights: dict[tuple[int, int], float | None] = field(
         default_factory=dict[tuple[int, int], "float | None"],
     )
@@ -65,6 +72,9 @@ class Context:
     )
     _loaded: dict[tuple[str, Load], Context] = field(
         default_factory=dict[tuple[str, Load], "Context"],
+    )
+    _arms: dict[tuple[str, tuple[tuple[str, Stance], ...]], Context] = field(
+        default_factory=dict[tuple[str, tuple[tuple[str, "Stance"], ...]], "Context"],
     )
     _boxes: dict[tuple[str, Pose], tuple[Array, Array]] = field(
         default_factory=dict[tuple[str, Pose], "tuple[Array, Array]"],
@@ -82,7 +92,7 @@ class Context:
     @cached_property
     def ik(self) -> ArmIK:
         """Inverse kinematics of the arm."""
-        return ArmIK(self.robot)
+        return self.solver or ArmIK(self.robot)
 
     @cached_property
     def base_fit(self) -> BaseFit | None:
@@ -207,6 +217,35 @@ class Context:
             )  # fmt: skip
             self._loaded[body, load] = made
         return self._loaded[body, load]
+
+    def of_arm(self, name: str, others: Mapping[str, Stance] = NO_OTHERS) -> Context:
+        """Return the context in which one of the robot's arms moves, and the others hold still.
+
+        Args:
+            name: Of the arm.
+            others: How others stand, by their names; at home and empty where nothing is said.
+
+        Raises:
+            KeyError: There is no such arm.
+        """
+        key = name, tuple(sorted(others.items(), key=lambda one: one[0]))
+        if key not in self._arms:
+            postures = {other: self._posture(other, how) for other, how in others.items()}
+            robot = beside(self.robot.arms, name, postures)
+            solver = self.of_arm(name).ik if others else None
+            self._arms[key] = Context(
+                self.scene, robot, self.mixtures, self.steering, planner=self.planner,
+                solver=solver, footings=self.footings,
+            )  # fmt: skip
+        return self._arms[key]
+
+    def _posture(self, name: str, stance: Stance) -> Posture:
+        arm, grasp = arm_of(self.robot, name), stance.grasp
+        joints = stance.joints or arm.home
+        if grasp is None:
+            return Posture(joints, arm.opening)
+        held = Link(grasp.body, self.scene.bodies[grasp.body].parts)
+        return Posture(joints, grasp.opening, (held, grasp.T_tool_body))
 
     def scene_at(self, poses: Mapping[str, Pose], proposed: str | None = None) -> Scene:
         """Return the scene at a step of the plan: movable bodies at their poses there, those in the

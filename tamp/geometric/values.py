@@ -26,6 +26,19 @@ class Grasp:
 
 
 @dataclass(frozen=True)
+class Stance:
+    """Stance of an arm while another one moves.
+
+    Attributes:
+        joints: Positions, radians or metres; at home without them.
+        grasp: What its hand holds; without it the hand is open.
+    """
+
+    joints: tuple[float, ...] | None = None
+    grasp: Grasp | None = None
+
+
+@dataclass(frozen=True)
 class BaseConf:
     """A base configuration: x, y in metres, yaw in radians."""
 
@@ -64,12 +77,14 @@ class Path:
         points: Shape (n, 3) or (n, 7), linear in between.
         opening: The fingers' opening on the way, metres.
         holding: The body in the hand, or None.
+        arm: Which arm it is of, where the plan says; else the first.
     """
 
     part: str
     points: Array
     opening: float
     holding: str | None = None
+    arm: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,12 +96,14 @@ class Grip:
         attach: The grasp that begins, or None.
         detach: The body that is let go, or None.
         load: What stands on it, and is carried along or set down with it.
+        arm: Whose fingers, where the plan says; else the first one's.
     """
 
     opening: tuple[float, float]
     attach: Grasp | None = None
     detach: str | None = None
     load: Load = ()
+    arm: str | None = None
 
 
 @dataclass(frozen=True, eq=False)

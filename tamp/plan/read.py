@@ -56,6 +56,7 @@ class Segment:
         holding: The body in the hand on the way.
         attach: The grasp that begins when the fingers have closed.
         detach: The body that is let go when they start to open.
+        arm: Which arm, or whose fingers, where the plan says; else the first.
     """
 
     part: str
@@ -65,6 +66,7 @@ class Segment:
     holding: str | None = None
     attach: Hold | None = None
     detach: str | None = None
+    arm: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +74,8 @@ class Value:
     """The value that an object of a stream stands for.
 
     `data` is T_world_body (4, 4) of a pose, a Hold of a grasp, x, y, yaw (3,) of a base-conf, the
-    rows (n, joints) of a reach's approach and lift, for each segment of a motion its part and rows
-    (None when they are not given), and None of every type that we do not know.
+    rows (n, joints) of a reach's approach and lift, for each segment of a motion its part, rows and
+    arm (None when they are not given), and None of every type that we do not know.
     """
 
     type: str
@@ -212,12 +214,17 @@ def _value(field: Field) -> Value:
     return Value(type_, data)
 
 
-def _stretch(field: Field) -> tuple[str, Array]:
+def _stretch(field: Field) -> tuple[str, Array, str | None]:
     """Read a part and the rows that it goes through, without times; of a gripper its openings."""
-    part = field["part"].text(PARTS)
+    part, arm = field["part"].text(PARTS), _arm(field)
     if part == "gripper":
-        return part, field["opening"].numbers()[:, None]
-    return part, field["points"].rows(WIDTHS[part])
+        return part, field["opening"].numbers()[:, None], arm
+    return part, field["points"].rows(WIDTHS[part]), arm
+
+
+def _arm(field: Field) -> str | None:
+    arm = field.get("arm")
+    return arm.text() if arm else None
 
 
 def _hold(field: Field) -> Hold:
@@ -245,7 +252,7 @@ def _action(field: Field) -> TimedAction:
 
 
 def _segment(field: Field) -> Segment:
-    part = field["part"].text(PARTS)
+    part, arm = field["part"].text(PARTS), _arm(field)
     times = field["times"].numbers()
     if len(times) == 0:
         raise field["times"].wrong("at least one time is expected")
@@ -261,18 +268,17 @@ def _segment(field: Field) -> Segment:
             T_tool_body = _in_hand(attach["T_tool_body"])
             hold = Hold(attach["body"].text(), T_tool_body, float(opening[-1]), tuple(load))
         positions = np.empty((len(times), 0))
-        return Segment(
-            part, times, positions, opening, None, hold, detach.text() if detach else None
-        )
+        let_go = detach.text() if detach else None
+        return Segment(part, times, positions, opening, None, hold, let_go, arm)
 
     positions = field["positions"].rows(WIDTHS[part])
     if len(positions) != len(times):
-        raise field["positions"].wrong(
-            f"{len(times)} rows are expected, one a time, not {len(positions)}"
-        )
+        what = f"{len(times)} rows are expected, one a time, not {len(positions)}"
+        raise field["positions"].wrong(what)
     opening = np.full(len(times), field["opening"].number())
     holding = field.get("holding")
-    return Segment(part, times, positions, opening, holding.text() if holding else None)
+    held = holding.text() if holding else None
+    return Segment(part, times, positions, opening, held, arm=arm)
 
 
 def _check_bodies(root: Field, plan: PlanFile) -> None:

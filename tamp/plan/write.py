@@ -58,8 +58,8 @@ def plan_document(solution: Solution) -> dict[str, Any]:
         "certified": [list(fact) for fact in solution.certified if fact[0] not in hidden],
         "actions": [_action(action) for action in solution.plan],
         "cost": solution.cost,
-        "duration": _number(solution.duration),
-        "statistics": _statistics(solution),
+        "duration": rounded(solution.duration),
+        "statistics": statistics_document(solution),
         **({} if record is None else {"record": record}),
         "timing": {name: round(seconds, 6) for name, seconds in solution.seconds.items()},
     }
@@ -131,63 +131,8 @@ def write_plan(solution: Solution, path: str | Path) -> Path:
     return target
 
 
-def summary_document(solution: Solution) -> dict[str, Any]:
-    """Return what `--json` prints: the outcome, and the plan without its trajectories."""
-    timing = {name: round(seconds, 6) for name, seconds in solution.seconds.items()}
-
-    return {
-        "outcome": solution.outcome.name.lower(),
-        "message": solution.outcome.value,
-        "explanation": list(solution.explanation),
-        "causes": [cause.document() for cause in solution.causes],
-        "tried": [
-            {
-                "action": tally.action,
-                "stream": tally.stream,
-                "tries": tally.tries,
-                "successes": tally.successes,
-                "reasons": dict(tally.reasons.most_common()),
-            }
-            for tally in solution.tallies
-        ],
-        "problem": solution.problem.name,
-        "seed": solution.seed,
-        "actions": [
-            {
-                "name": action.name,
-                "objects": list(action.objects),
-                "arguments": list(action.arguments),
-                "start": _number(action.start),
-                "duration": _number(action.trajectory.duration),
-                "cost": action.cost,
-            }
-            for action in solution.plan
-        ],
-        "cost": solution.cost,
-        "duration": _number(solution.duration),
-        **_optimization(solution),
-        "statistics": _statistics(solution),
-        "warnings": list(solution.warnings),
-        "timing": timing,
-    }
-
-
-def _optimization(solution: Solution) -> dict[str, Any]:
-    if not solution.improvements:
-        return {}
-    steps = [
-        {
-            "seconds": round(i.seconds, 6),
-            "cost": i.cost,
-            "actions": i.actions,
-            "duration": _number(i.duration),
-        }
-        for i in solution.improvements
-    ]
-    return {"optimization": {"bound": solution.bound, "gap": solution.gap, "improvements": steps}}
-
-
-def _statistics(solution: Solution) -> dict[str, Any]:
+def statistics_document(solution: Solution) -> dict[str, Any]:
+    """Return how a solution was found."""
     effort = solution.effort
     return {
         "searches": effort.searches,
@@ -209,20 +154,20 @@ def _action(action: Action) -> dict[str, Any]:
     return {
         "name": action.name,
         "arguments": list(action.arguments),
-        "start": _number(action.start),
-        "duration": _number(action.trajectory.duration),
+        "start": rounded(action.start),
+        "duration": rounded(action.trajectory.duration),
         "cost": action.cost,
         "segments": [_segment(segment) for segment in action.trajectory.segments],
     }
 
 
 def _segment(segment: Segment) -> dict[str, Any]:
-    shared = {"part": segment.part, "times": _numbers(segment.times)}
+    shared = {"part": segment.part, **_arm(segment.arm), "times": _numbers(segment.times)}
     if segment.part != "gripper":
         return {
             **shared,
             "positions": _rows(segment.positions),
-            "opening": _number(segment.opening),
+            "opening": rounded(segment.opening),
             "holding": _body(segment.holding),
         }
     document: dict[str, Any] = {**shared, "opening": _numbers(segment.positions[:, 0])}
@@ -241,11 +186,11 @@ def _value(value: object) -> dict[str, Any]:
         case Pose():
             return {"type": "pose", **_pose(value)}
         case Grasp():
-            frame, opening = _pose(value.T_tool_body), _number(value.opening)
+            frame, opening = _pose(value.T_tool_body), rounded(value.opening)
             held = {"body": _body(value.body), "T_tool_body": frame, "opening": opening}
             return {"type": "grasp", **held}
         case BaseConf():
-            return {"type": "base-conf", "base": [_number(number) for number in value.array]}
+            return {"type": "base-conf", "base": [rounded(number) for number in value.array]}
         case Reach():
             return {"type": "reach", "approach": _rows(value.approach), "lift": _rows(value.lift)}
         case Motion():
@@ -258,15 +203,21 @@ def _value(value: object) -> dict[str, Any]:
 def _motion_segment(item: Polyline | Grip) -> dict[str, Any]:
     if isinstance(item, Polyline):
         points = _rows(item.points)
-        opening, holding = _number(item.opening), _body(item.holding)
-        return {"part": item.part, "points": points, "opening": opening, "holding": holding}
+        opening, holding = rounded(item.opening), _body(item.holding)
+        moved = {"points": points, "opening": opening, "holding": holding}
+        return {"part": item.part, **_arm(item.arm), **moved}
     attach = None if item.attach is None else _body(item.attach.body)
     return {
         "part": "gripper",
-        "opening": [_number(width) for width in item.opening],
+        **_arm(item.arm),
+        "opening": [rounded(width) for width in item.opening],
         "attach": attach,
         "detach": _body(item.detach),
     }
+
+
+def _arm(name: str | None) -> dict[str, str]:
+    return {} if name is None else {"arm": name}
 
 
 def _body(name: str | None) -> str | None:
@@ -276,17 +227,18 @@ def _body(name: str | None) -> str | None:
 
 def _pose(pose: Pose) -> dict[str, list[float]]:
     return {
-        "position": [_number(number) for number in pose.position],
+        "position": [rounded(number) for number in pose.position],
         "quaternion": [round(number, 12) for number in pose.quaternion],
     }
 
 
-def _number(number: float) -> float:
+def rounded(number: float) -> float:
+    """Round a number as plan files have it."""
     return round(float(number), DIGITS) + 0.0
 
 
 def _numbers(row: Array) -> list[float]:
-    return [_number(number) for number in row]
+    return [rounded(number) for number in row]
 
 
 def _rows(rows: Array) -> list[list[float]]:

@@ -101,7 +101,7 @@ def _otherwise(
         if isinstance(pose := values[name], Pose)
     }
 
-    held = next((name for name in scene.movable if name not in poses), None)
+    held = [name for name in scene.movable if name not in poses]
     seen = observe(
         relation,
         classifier,

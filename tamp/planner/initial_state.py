@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,6 +11,9 @@ from tamp.geometric.values import BaseConf, Grasp
 from tamp.symbolic.pddl.structs import Domain, Fact
 
 START_BASE = "base_start"
+
+ARM = "arm"
+"""Type, or predicate, of the robot's arms."""
 
 STACKED = "stacked"
 """(stacked ?o ?p ?surface ?below ?pb): ?o at ?p stands on a surface of ?below, which is at ?pb."""
@@ -25,7 +28,9 @@ class InitialState:
     values: dict[str, Any] = field(default_factory=dict[str, Any])
 
 
-def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) -> InitialState:
+def initial_state(
+    scene: Scene, domain: Domain, holding: Grasp | None = None, arms: Sequence[str] = ()
+) -> InitialState:
     """Say the scene in the words of the domain.
 
     Facts of predicates that the domain does not declare are left out. Where it declares a predicate
@@ -36,6 +41,7 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
         scene: The scene.
         domain: The domain.
         holding: What is in the hand; that body is nowhere else.
+        arms: Names of the robot's arms, for a domain that has them.
     """
     state = InitialState()
     for name, body in scene.bodies.items():
@@ -45,9 +51,15 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
     for name in scene.cavities:
         _object(state, domain, name, "container")
 
+    known = declares_arms(domain)
+    for arm in arms if known else ():
+        _object(state, domain, arm, ARM)
+
     start = _value(state, domain, START_BASE, "base-conf", BaseConf(*scene.robot.base))
     facts: list[Fact] = [("at-base", start), ("standing", start)]
-    if holding is None:
+    if known:
+        facts += [("hand-empty", arm) for arm in arms]
+    elif holding is None:
         facts.append(("hand-empty",))
     else:
         held = holding.body.lower()
@@ -66,6 +78,11 @@ def initial_state(scene: Scene, domain: Domain, holding: Grasp | None = None) ->
 
     state.facts.update(fact for fact in facts if _fits(domain, fact))
     return state
+
+
+def declares_arms(domain: Domain) -> bool:
+    """Tell whether a domain has arms as objects."""
+    return ARM in domain.types or _fits(domain, (ARM, ""))
 
 
 def _support_facts(scene: Scene, body: Body, poses: Mapping[str, str], carries: bool) -> list[Fact]:

@@ -162,7 +162,7 @@ def _observed(
 ) -> Observation:
     at = {fact[1]: fact[2] for fact in facts if fact[0] in (POSE, "at-pose") and len(fact) == 3}
     held = context.holding
-    scene = moved(context.scene, {}, held.body if held is not None else None)
+    scene = moved(context.scene, {}, () if held is None else (held.body,))
     seen = observe(relation, classifier, scene, domain, objects, facts, at)
     refuse_silent(relation.name, seen)
     return seen

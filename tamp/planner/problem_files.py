@@ -9,9 +9,10 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.geometric.loading.load import LoadedProblem, load_scene
+from tamp.geometric.loading.robots import load_robot
 from tamp.geometric.scene.scene import Scene
 from tamp.geometric.values import Grasp
-from tamp.planner.initial_state import InitialState, initial_state
+from tamp.planner.initial_state import InitialState, declares_arms, initial_state
 from tamp.planner.movable_places import carries, check_circle, place_facts, remedied, with_tops
 from tamp.planner.wanted_relations import wanted_facts
 from tamp.relations.observed import scene_names
@@ -77,7 +78,8 @@ def read_files(
 def parse_task(files: ProblemFiles, holding: Grasp | None) -> tuple[InitialState, Formula]:
     """Say the scene in the domain's words, with the facts that the file adds; parse the goal."""
     loaded, domain = files.loaded, files.domain
-    start = initial_state(loaded.scene, domain, holding)
+    arms = _arms(loaded) if declares_arms(domain) else ()
+    start = initial_state(loaded.scene, domain, holding, arms)
 
     try:
         goal = parse_goal(
@@ -101,6 +103,21 @@ def parse_task(files: ProblemFiles, holding: Grasp | None) -> tuple[InitialState
 
     _check_metric(loaded)
     return start, goal
+
+
+def _arms(loaded: LoadedProblem) -> tuple[str, ...]:
+    """List the names of the robot's arms, which are objects of the domain.
+
+    Raises:
+        InputError: A body or a place has such a name.
+    """
+    arms = tuple(arm.arm for arm in load_robot(loaded.scene.robot.model).arms)
+    scene = loaded.scene
+    for name in (*scene.bodies, *scene.surfaces, *scene.cavities):
+        if name.lower() in arms:
+            remedy = "Give it another name"
+            raise loaded.error(f"'{name}' is the name of one of the robot's arms", name, remedy)
+    return arms
 
 
 def _domain_path(loaded: LoadedProblem, domain: str | Path | None) -> Path:

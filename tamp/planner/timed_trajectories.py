@@ -11,7 +11,7 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.motion.timing import time_path
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.values import Grasp, Grip, Load, Motion, Path
+from tamp.geometric.values import Grasp, Grip, Load, Motion, Path, Stance
 from tamp.symbolic.algorithms.result import PlanAction
 
 GRIP_TIME = 0.5
@@ -36,6 +36,7 @@ class Segment:
         attach: The grasp that a gripper segment ends with.
         detach: The body that it lets go.
         load: What stands on that body and goes with it.
+        arm: Which arm, or whose fingers, where the plan says; else the first.
     """
 
     part: str
@@ -46,6 +47,7 @@ class Segment:
     attach: Grasp | None = None
     detach: str | None = None
     load: Load = ()
+    arm: str | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,12 +107,13 @@ class PlanTimer:
         self._cache = cache
         self._context = context
         self._poses: dict[str, Pose] = {name: scene.bodies[name].pose for name in scene.movable}
-        self._held: Grasp | None = context.holding
+        self._held: dict[str | None, Grasp] = {}
         self._load: Load = ()
-        if self._held is not None:
-            self._poses.pop(self._held.body)
+        if context.holding is not None:
+            self._held[None] = context.holding
+            self._poses.pop(context.holding.body)
         self._base: Array = np.array(scene.robot.base)
-        self._arm: Array = context.home
+        self._arms: dict[str | None, Array] = {}
 
     def segments(self, motion: Motion) -> list[Segment]:
         """Time the paths and gripper commands of a motion."""
@@ -119,45 +122,68 @@ class PlanTimer:
             for item in motion.segments
         ]
 
+    def _around(self, arm: str | None) -> Context:
+        """Return the context in which an arm moves, and the others hold still where they are."""
+        if arm is None:
+            return self._context
+        others = {
+            name: Stance(tuple(self._arms[name].tolist()), self._held.get(name))
+            for name in self._arms
+            if name not in (arm, None)
+        }
+        return self._context.of_arm(arm, others)
+
+    def _at(self, arm: str | None) -> Array:
+        """Return where an arm is, (n,): at home where it has not moved."""
+        home = self._context.home if arm is None else self._context.of_arm(arm).home
+        return self._arms.get(arm, home)
+
     def _grip(self, grip: Grip) -> Segment:
+        context, held = self._around(grip.arm), self._held.get(grip.arm)
         if grip.attach is not None:
-            self._held, self._load = grip.attach, grip.load
+            self._held[grip.arm], self._load = grip.attach, grip.load
             for name in (grip.attach.body, *(rider for rider, _ in grip.load)):
                 self._poses.pop(name, None)
-        elif self._held is not None:
-            tool = Pose.from_matrix(
-                self._context.kinematics.tool_plainly(self._context.conf(self._base, self._arm))
-            )
-            pose = tool @ self._held.T_tool_body
-            self._poses[self._held.body] = pose
+        elif held is not None:
+            conf = context.conf(self._base, self._at(grip.arm))
+            pose = Pose.from_matrix(context.kinematics.tool_plainly(conf)) @ held.T_tool_body
+            del self._held[grip.arm]
+            if not any(held.body == other.body for other in self._held.values()):
+                self._poses[held.body] = pose
             self._poses |= {rider: pose @ T_body_rider for rider, T_body_rider in self._load}
-            self._held, self._load = None, ()
+            self._load = ()
+
         positions = np.array(grip.opening)[:, None]
-        way, speed = abs(grip.opening[1] - grip.opening[0]), 2 * self._context.robot.finger_speed
+        way, speed = abs(grip.opening[1] - grip.opening[0]), 2 * context.robot.finger_speed
         times = np.array([0.0, max(GRIP_TIME, way / speed if way else 0.0)])
         return Segment(
-            "gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach, grip.load
-        )
+            "gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach, grip.load,
+            grip.arm,
+        )  # fmt: skip
 
     def _path(self, path: Path) -> Segment:
         """Time the path, or return what it was timed to before in the same circumstances."""
-        held = self._held and (self._held.body, self._held.T_tool_body.position, self._load)
+        held = tuple(
+            (arm, one.body, one.T_tool_body.position, self._load) for arm, one in self._held.items()
+        )
         bodies = tuple((name, pose.position, pose.quaternion) for name, pose in self._poses.items())
-        key = (id(path), self._base.tobytes(), self._arm.tobytes(), held, bodies)
+        arms = tuple((arm, joints.tobytes()) for arm, joints in self._arms.items())
+        key = (id(path), self._base.tobytes(), arms, held, bodies)
         if key not in self._cache:
             self._cache[key] = path, self._time(path)
         segment = self._cache[key][1]
         if path.part == "base":
             self._base = segment.positions[-1]
         else:
-            self._arm = path.points[-1]
+            self._arms[path.arm] = path.points[-1]
         return segment
 
     def _time(self, path: Path) -> Segment:
-        context, robot = self._context, self._context.robot
-        if self._held is not None:
-            context = context.loaded(self._held.body, self._load)
-        attachment = None if self._held is None else context.attachment(self._held)
+        context, held = self._around(path.arm), self._held.get(path.arm)
+        robot, arm = context.robot, self._at(path.arm)
+        if held is not None:
+            context = context.loaded(held.body, self._load)
+        attachment = None if held is None else context.attachment(held)
         arrangement = context.collisions.arrangement(self._poses, attachment)
         pace = GENTLE if self._load else 1.0
         velocity = pace * np.array(robot.velocity)
@@ -165,9 +191,7 @@ class PlanTimer:
 
         def conf(point: Array) -> Array:
             return (
-                context.conf(point, self._arm)
-                if path.part == "base"
-                else context.conf(self._base, point)
+                context.conf(point, arm) if path.part == "base" else context.conf(self._base, point)
             )
 
         def edge_free(a: Array, b: Array) -> bool:
@@ -184,4 +208,6 @@ class PlanTimer:
         sharp = path.part == "base" and context.steering == "differential"
         limits = velocity[joints], acceleration[joints]
         timed = time_path(points, *limits, None if sharp else edge_free)
-        return Segment(path.part, timed.times, timed.positions, path.opening, path.holding)
+        return Segment(
+            path.part, timed.times, timed.positions, path.opening, path.holding, arm=path.arm
+        )

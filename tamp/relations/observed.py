@@ -80,12 +80,12 @@ def scene_names(scene: Scene) -> dict[str, str]:
     return {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
 
 
-def moved(scene: Scene, poses: Mapping[str, Pose], absent: str | None = None) -> Scene:
-    """Move bodies of a scene to poses T_world_body, by name; the body in the hand is taken out."""
+def moved(scene: Scene, poses: Mapping[str, Pose], absent: Collection[str] = ()) -> Scene:
+    """Move bodies of a scene to poses T_world_body, by name; those in hands are taken out."""
     bodies = {
         name: replace(body, pose=poses[name]) if name in poses else body
         for name, body in scene.bodies.items()
-        if name != absent
+        if name not in absent
     }
     return replace(scene, bodies=bodies)
 

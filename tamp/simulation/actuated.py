@@ -17,7 +17,7 @@ from tamp.simulation.actuation import (
     MotorSimulation,
     contact_pair,
 )
-from tamp.simulation.fingers import Fingers, with_pads
+from tamp.simulation.fingers import Fingers, iterations, with_pads
 from tamp.simulation.mobile_urdf import BASE_JOINTS, mobile_urdf
 from tamp.simulation.physics import BulletWorld
 from tamp.simulation.shapes import link_frame
@@ -40,10 +40,9 @@ class BulletMotors(BulletWorld, MotorSimulation):
 
     def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
         super().__init__(scene, None, dynamic=True)
-        force = robot.force if force is None else force
+        self.begin(robot, scene)
         self._steps = 0
-        self._forces = [*(BASE_FORCE,) * 3, *robot.effort]
-        self._T_hand_tool = robot.T_hand_tool.matrix
+        self._forces = [BASE_FORCE] * 3 + [most for arm in robot.arms for most in arm.effort]
         bullet, client = self._bullet, self.client
         bullet.setPhysicsEngineParameter(deterministicOverlappingPairs=1, physicsClientId=client)
         for name in scene.movable:
@@ -68,29 +67,29 @@ class BulletMotors(BulletWorld, MotorSimulation):
             )
             self._owners[self._mover, number] = info[12].decode()
 
-        self._driven = [joint[name] for name in (*BASE_JOINTS, *(one.name for one in robot.joints))]
-        self._finger_joints = [joint[finger.name] for finger in robot.fingers]
-        self._fingers = (
-            Fingers(bullet, client, self._mover, self._finger_joints, force)
-            if robot.fingers
+        names = (*BASE_JOINTS, *(one.name for arm in robot.arms for one in arm.joints))
+        self._driven = [joint[name] for name in names]
+        self._finger_joints = [[joint[one.name] for one in arm.fingers] for arm in robot.arms]
+        self._fingers = [
+            Fingers(bullet, client, self._mover, joints, arm.force if force is None else force)
+            if joints
             else None
-        )
-        self._hand = link[robot.hand]
-        self._grasping = self._finger_joints or [self._hand]
+            for joints, arm in zip(self._finger_joints, robot.arms, strict=True)
+        ]
+        self._hands = [link[arm.hand] for arm in robot.arms]
+        self._grasping = [
+            joints or [hand] for joints, hand in zip(self._finger_joints, self._hands, strict=True)
+        ]
         self.robot_links = frozenset(link)
-        self.hand_link = robot.hand
-        self.finger_links = tuple(one.name for one in robot.finger_links)
-
-        self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
-        self.opening = self.widest = robot.opening
-        self.squeezing = False
-        self.bound: str | None = None
-        self._constraint = -1
+        self._constraints = [-1] * len(robot.arms)
 
         for number, value in zip(self._driven, self.conf, strict=True):
             bullet.resetJointState(self._mover, number, float(value), physicsClientId=client)
-        for number in self._finger_joints:
-            bullet.resetJointState(self._mover, number, self.opening / 2, physicsClientId=client)
+        for joints, hand in zip(self._finger_joints, self.hands, strict=True):
+            for number in joints:
+                bullet.resetJointState(
+                    self._mover, number, hand.opening / 2, physicsClientId=client
+                )
 
     # Time
 
@@ -105,8 +104,15 @@ class BulletMotors(BulletWorld, MotorSimulation):
             targetVelocities=[0.0] * count if rates is None else list(rates), forces=self._forces,
             positionGains=[0.3] * count, velocityGains=[1.0] * count, physicsClientId=client,
         )  # fmt: skip
-        if self._fingers is not None:
-            self._fingers.drive(self.opening, self.squeezing, COMMANDS_PER_SECOND)
+        pressing = [
+            fingers.drive(hand.opening, hand.squeezing, COMMANDS_PER_SECOND)
+            for fingers, hand in zip(self._fingers, self.hands, strict=True)
+            if fingers is not None
+        ]
+        if pressing:
+            bullet.setPhysicsEngineParameter(
+                numSolverIterations=iterations(any(pressing)), physicsClientId=client
+            )
         bullet.stepSimulation(physicsClientId=client)
         self._steps += 1
 
@@ -124,15 +130,18 @@ class BulletMotors(BulletWorld, MotorSimulation):
 
     def width(self) -> float:
         """Return how far the fingers are apart, metres."""
-        return 0.0 if self._fingers is None else self._fingers.width()
+        fingers = self._fingers[self.used]
+        return 0.0 if fingers is None else fingers.width()
 
     def tool(self) -> Array:
         """Return the actual T_world_tool (4, 4)."""
         state = self._bullet.getLinkState(
-            self._mover, self._hand, computeForwardKinematics=1, physicsClientId=self.client
+            self._mover, self._hands[self.used], computeForwardKinematics=1,
+            physicsClientId=self.client,
         )  # fmt: skip
         x, y, z, *turn = link_frame(state)
-        return Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])).matrix @ self._T_hand_tool
+        T_world_hand = Pose((x, y, z), (turn[0], turn[1], turn[2], turn[3])).matrix
+        return T_world_hand @ self.arms[self.used].T_hand_tool.matrix
 
     def speed(self, body: str) -> tuple[float, float]:
         """Return the speed of a movable body: metres and radians a second."""
@@ -165,7 +174,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
             self._bullet.getClosestPoints(
                 self._mover, handle, reach, finger, -1, physicsClientId=self.client
             )
-            for finger in self._grasping
+            for finger in self._grasping[self.used]
         )
 
     # What happens to bodies
@@ -174,8 +183,9 @@ class BulletMotors(BulletWorld, MotorSimulation):
         """Fix a body to the hand where it is; the robot passes through it from now on."""
         self.detach()
         bullet, client, handle = self._bullet, self.client, self.solids[body][0].handle
+        hand = self._hands[self.used]
         state = bullet.getLinkState(
-            self._mover, self._hand, computeForwardKinematics=1, physicsClientId=client
+            self._mover, hand, computeForwardKinematics=1, physicsClientId=client
         )
         # Of the centres of mass, as the engine wants them.
         T_world_hand = Pose(tuple(state[0]), tuple(state[1]))
@@ -183,11 +193,11 @@ class BulletMotors(BulletWorld, MotorSimulation):
             *map(tuple, bullet.getBasePositionAndOrientation(handle, physicsClientId=client))
         )
         T_hand_body = T_world_hand.inverse() @ T_world_body
-        self._constraint = bullet.createConstraint(
-            self._mover, self._hand, handle, -1, bullet.JOINT_FIXED, [0, 0, 0],
+        self._constraints[self.used] = bullet.createConstraint(
+            self._mover, hand, handle, -1, bullet.JOINT_FIXED, [0, 0, 0],
             T_hand_body.position, [0, 0, 0], T_hand_body.quaternion, physicsClientId=client,
         )  # fmt: skip
-        self.bound = body
+        self.hand.bound = body
         self.disable_collision(body, True)
 
     def detach(self) -> None:
@@ -195,8 +205,9 @@ class BulletMotors(BulletWorld, MotorSimulation):
         says otherwise.
         """
         if self.bound is not None:
-            self._bullet.removeConstraint(self._constraint, physicsClientId=self.client)
-            self.bound = None
+            constraint = self._constraints[self.used]
+            self._bullet.removeConstraint(constraint, physicsClientId=self.client)
+            self.hand.bound = None
 
     def disable_collision(self, body: str, passes: bool) -> None:
         """Switch collisions between the robot and a body: whether they do not feel each other."""
@@ -220,8 +231,7 @@ class BulletMotors(BulletWorld, MotorSimulation):
         says.
         """
         for name in self.scene.bodies.keys() - scene.bodies.keys():
-            if self.bound == name:
-                self.detach()
+            self._forget(name)
             for solid in self.solids.pop(name):
                 self._bullet.removeBody(solid.handle, physicsClientId=self.client)
         for name, body in scene.bodies.items():
@@ -231,6 +241,13 @@ class BulletMotors(BulletWorld, MotorSimulation):
                     self._let_roll(name)
         self.scene = scene
         self.wake(self.bound)
+
+    def _forget(self, body: str) -> None:
+        """Take a body that goes out of the hands that it is bound to."""
+        for constraint, hand in zip(self._constraints, self.hands, strict=True):
+            if hand.bound == body:
+                self._bullet.removeConstraint(constraint, physicsClientId=self.client)
+                hand.bound = None
 
     def wake(self, body: str | None) -> None:
         """Wake all bodies; this one, which is handled, stays awake when it is at rest

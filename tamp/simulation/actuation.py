@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import dataclass
 
+import numpy as np
+
+from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.world import World
@@ -39,30 +43,104 @@ def contact_pair(
     return low, high
 
 
-class MotorSimulation(World):
-    """The robot's base, arm and fingers follow `conf` and `opening` by position control; bodies
-    have mass and fall.
-
-    `tamp.simulation.engines.open_actuated` makes one.
+@dataclass
+class Hand:
+    """Command to the hand of an arm.
 
     Attributes:
-        conf: What base and arm aim at, [x, y, yaw, q1..qn], shape (3 + n,), metres and radians.
         opening: What the fingers aim at, metres between them.
         squeezing: The fingers close instead, and press with their whole force on what they meet.
         bound: The body that a fixed constraint binds to the hand, or None.
-        widest: The fingers' largest opening, metres.
-        robot_links: Names of the robot's links, of which `hand_link` and `finger_links` are some.
-            A suction gripper has no fingers.
     """
 
-    conf: Array
     opening: float
-    squeezing: bool
-    bound: str | None
-    widest: float
+    squeezing: bool = False
+    bound: str | None = None
+
+
+class MotorSimulation(World):
+    """The robot's base, arms and fingers follow `conf` and the hands' openings by position control;
+    bodies have mass and fall.
+
+    `tamp.simulation.engines.open_actuated` makes one. Whatever is of one hand is of the arm that is
+    in use: the first one until `use` says otherwise.
+
+    Attributes:
+        arms: The robot's.
+        hands: Of these.
+        used: The number of the arm that is in use.
+        conf: What base and arms aim at, [x, y, yaw, q1..qn of each arm], shape (3 + n,), metres and
+            radians.
+        robot_links: Names of the robot's links.
+    """
+
+    arms: tuple[Robot, ...]
+    hands: list[Hand]
+    used: int
+    conf: Array
     robot_links: frozenset[str]
-    hand_link: str
-    finger_links: tuple[str, ...]
+
+    def begin(self, robot: Robot, scene: Scene) -> None:
+        """Set out with the robot at its start, the hands open."""
+        self.arms, self.used = robot.arms, 0
+        self.hands = [Hand(arm.opening) for arm in robot.arms]
+        first = scene.robot.arm or robot.home
+        others = (q for arm in robot.beside for q in arm.home)
+        self.conf = np.array([*scene.robot.base, *first, *others], dtype=float)
+
+    def use(self, arm: str | None) -> None:
+        """Use the arm of a name; the first without one."""
+        names = [one.arm for one in self.arms]
+        self.used = 0 if arm is None else names.index(arm)
+
+    @property
+    def joints(self) -> slice:
+        """Return which numbers of `conf` are the used arm's."""
+        first = 3 + sum(len(arm.joints) for arm in self.arms[: self.used])
+        return slice(first, first + len(self.arms[self.used].joints))
+
+    @property
+    def hand(self) -> Hand:
+        """Return what the used hand does."""
+        return self.hands[self.used]
+
+    @property
+    def opening(self) -> float:
+        """Return what its fingers aim at, metres between them."""
+        return self.hand.opening
+
+    @opening.setter
+    def opening(self, opening: float) -> None:
+        self.hand.opening = opening
+
+    @property
+    def squeezing(self) -> bool:
+        """Return whether its fingers close and press."""
+        return self.hand.squeezing
+
+    @squeezing.setter
+    def squeezing(self, squeezing: bool) -> None:
+        self.hand.squeezing = squeezing
+
+    @property
+    def bound(self) -> str | None:
+        """Return the body that is bound to it, or None."""
+        return self.hand.bound
+
+    @property
+    def widest(self) -> float:
+        """Return its fingers' largest opening, metres."""
+        return self.arms[self.used].opening
+
+    @property
+    def finger_links(self) -> tuple[str, ...]:
+        """Return the names of its fingers' links."""
+        return tuple(link.name for link in self.arms[self.used].finger_links)
+
+    @property
+    def grippers(self) -> frozenset[str]:
+        """Return the names of all hands' and fingers' links."""
+        return frozenset[str]().union(*(arm.grippers for arm in self.arms))
 
     # Time
 

@@ -48,7 +48,7 @@ crept by 1.7 mm a minute and a mug by 5 mm, with 200 the mug by 1.3 mm (docs/eng
 
 
 def with_pads(urdf: str, robot: Robot) -> str:
-    """Give both fingers of a description balls at the corners of their pads; the balls touch the
+    """Give the fingers of a description balls at the corners of their pads; the balls touch the
     pad's plane.
 
     Args:
@@ -58,8 +58,9 @@ def with_pads(urdf: str, robot: Robot) -> str:
     root = ElementTree.fromstring(urdf)
     links = {str(link.get("name")): link for link in root.iter("link")}
 
-    for finger, link in zip(robot.fingers, robot.finger_links, strict=True):
-        element, opens = links[link.name], np.array(finger.axis)
+    fingers = [(arm, finger) for arm in robot.arms for finger in arm.fingers]
+    for arm, finger in fingers:
+        element, opens = links[finger.child], np.array(finger.axis)
         for collision in element.findall("collision"):
             origin = collision.find("origin")
             if origin is None:
@@ -67,7 +68,7 @@ def with_pads(urdf: str, robot: Robot) -> str:
             at = np.array([float(word) for word in origin.get("xyz", "0 0 0").split()])
             origin.set("xyz", _words(at + FINGER_SETBACK_M * opens))
 
-        T_finger_tool = (finger.origin.inverse() @ robot.T_hand_tool).matrix
+        T_finger_tool = (finger.origin.inverse() @ arm.T_hand_tool).matrix
         for x, z in itertools.product((-PAD_CORNER_M, PAD_CORNER_M), repeat=2):
             centre = (T_finger_tool @ [x, 0.0, z, 1.0])[:3] + BALL_RADIUS_M * opens
             collision = ElementTree.SubElement(element, "collision")
@@ -80,6 +81,11 @@ def with_pads(urdf: str, robot: Robot) -> str:
 
 def _words(at: np.ndarray) -> str:
     return " ".join(f"{value:.9g}" for value in at)
+
+
+def iterations(pressing: bool) -> int:
+    """Return how many of the solver's iterations a step takes."""
+    return HOLDING_ITERATIONS if pressing else SOLVER_ITERATIONS
 
 
 class Fingers:
@@ -117,8 +123,8 @@ class Fingers:
         )
         return float(sum(state[0] for state in states))
 
-    def drive(self, opening: float, squeezing: bool, rate: int) -> None:
-        """Command the motors for one step.
+    def drive(self, opening: float, squeezing: bool, rate: int) -> bool:
+        """Command the motors for one step; whether they press.
 
         Args:
             opening: Metres between the fingers to go to,
@@ -130,11 +136,6 @@ class Fingers:
         if pressing != self._pressed:
             self._pressed = pressing
             self._stick(pressing)
-
-        bullet.setPhysicsEngineParameter(
-            numSolverIterations=HOLDING_ITERATIONS if pressing else SOLVER_ITERATIONS,
-            physicsClientId=self._client,
-        )
 
         for joint in self._joints:
             if pressing:
@@ -148,6 +149,7 @@ class Fingers:
                     targetPosition=0.0 if squeezing else opening / 2,
                     maxVelocity=CLOSING_SPEED, physicsClientId=self._client,
                 )  # fmt: skip
+        return pressing
 
     def _presses(self, squeezing: bool, rate: int) -> bool:
         """Check whether fingers that close have met something; from then on they press."""

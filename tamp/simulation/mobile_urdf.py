@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from xml.etree import ElementTree
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.urdf_words import roll_pitch_yaw
 from tamp.geometric.scene.scene import Box
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
@@ -22,7 +24,7 @@ _LIMIT = '<limit lower="-200000" upper="200000" effort="100000" velocity="10"/>'
 
 
 def mobile_urdf(robot: Robot) -> str:
-    """Write the URDF of the robot's own arm and hand on a base that slides along x and y and turns.
+    """Write the URDF of the robot's arms and hands on a base that slides along x and y and turns.
     Meshes by full path.
 
     Raises:
@@ -34,7 +36,6 @@ def mobile_urdf(robot: Robot) -> str:
 
     size = " ".join(map(str, base.parts[0].shape.size))
     at = " ".join(map(str, base.parts[0].pose.position))
-    foot = " ".join(map(str, robot.T_base_arm.position))
     x, y, yaw = BASE_JOINTS
 
     links = f"""
@@ -49,9 +50,41 @@ def mobile_urdf(robot: Robot) -> str:
     <axis xyz="0 1 0"/>{_LIMIT}</joint>
   <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link="{base.name}"/>
     <axis xyz="0 0 1"/>{_LIMIT}</joint>
-  <joint name="mount" type="fixed"><parent link="{base.name}"/><child link="{robot.foot}"/>
-    <origin xyz="{foot}"/></joint>
+{"".join(_mount(base.name, arm) for arm in robot.arms)}"""
+
+    if robot.beside:
+        arms = "".join(map(_renamed, robot.arms))
+        return f'<robot name="{robot.name}">{links}{arms}</robot>'
+    return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, _text(robot), count=1)
+
+
+def _mount(base: str, arm: Robot) -> str:
+    """Write the joint that fixes an arm's foot to the base."""
+    at = " ".join(map(str, arm.T_base_arm.position))
+    turned = " ".join(map(str, roll_pitch_yaw(arm.T_base_arm.rotation)))
+    return f"""  <joint name="{arm.prefix}mount" type="fixed">
+    <parent link="{base}"/><child link="{arm.foot}"/><origin xyz="{at}" rpy="{turned}"/></joint>
 """
 
-    text = robot.urdf.read_text(encoding="utf-8").replace("package://", f"{robot.urdf.parent}/")
-    return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, text, count=1)
+
+def _text(arm: Robot) -> str:
+    """Read an arm's own description, with its meshes by full path."""
+    return arm.urdf.read_text(encoding="utf-8").replace("package://", f"{arm.urdf.parent}/")
+
+
+def _renamed(arm: Robot) -> str:
+    """Write the links and joints of one of several arms with names of their own; what is only seen
+    is left out, whose colours have names as well.
+    """
+    root = ElementTree.fromstring(_text(arm))
+    kept = [element for element in root if element.tag in ("link", "joint")]
+    for element in kept:
+        for visual in element.findall("visual"):
+            element.remove(visual)
+        for one, key in (
+            (element, "name"), *((end, "link") for end in element.iterfind("parent")),
+            *((end, "link") for end in element.iterfind("child")),
+            *((master, "joint") for master in element.iterfind("mimic")),
+        ):  # fmt: skip
+            one.set(key, arm.prefix + str(one.get(key)))
+    return "".join(ElementTree.tostring(element, encoding="unicode") for element in kept)

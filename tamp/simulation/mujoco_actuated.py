@@ -54,48 +54,51 @@ SQUEEZE_AIM_M = -0.01
 """Metres at which squeezing fingers aim: past each other, so that they press."""
 
 
+def _weld(number: int, body: str) -> str:
+    """Name what can bind a body to the hand of the arm of a number."""
+    return f"{body_name(body)}/hand{number}"
+
+
 class MujocoMotors(MujocoWorld, MotorSimulation):
     """A world with gravity and a robot on motors in MuJoCo."""
 
     def __init__(self, scene: Scene, robot: Robot, force: float | None = None) -> None:
-        self._force = robot.force if force is None else force
-        self._robot, self._ticks = robot, 0
-        self._T_hand_tool = robot.T_hand_tool.matrix
-        self.opening = self.widest = robot.opening
-        self._aims = robot.opening / 2
-        self.squeezing = False
-        self.bound: str | None = None
+        self.begin(robot, scene)
+        self._forces = [arm.force if force is None else force for arm in robot.arms]
+        self._ticks = 0
+        self._aims = [arm.opening / 2 for arm in robot.arms]
+        self._finger_counts = [len(arm.fingers) for arm in robot.arms]
         self._passed: set[str] = set()
-        self.hand_link = robot.hand
-        self.finger_links = tuple(one.name for one in robot.finger_links)
         super().__init__(scene, robot, dynamic=True)
-        self.conf = np.array([*scene.robot.base, *(scene.robot.arm or robot.home)], dtype=float)
 
     # Building
 
     def _described(self) -> Model:
-        """Describe the scene, motors, and a weld that can bind each body to the hand."""
+        """Describe the scene, motors, and welds that can bind each body to each hand."""
         model = super()._described()
-        spec, mujoco, robot = model.spec, self._mujoco, self._robot
+        spec, mujoco = model.spec, self._mujoco
 
-        for joint in robot.joints:
-            spec.joint(joint.name).armature = ROTOR_INERTIA_KG_M2
-        driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
+        joints = [joint.name for arm in self.arms for joint in arm.joints]
+        efforts = [effort for arm in self.arms for effort in arm.effort]
+        for joint in joints:
+            spec.joint(joint).armature = ROTOR_INERTIA_KG_M2
         gains = [BASE_GAINS] * len(BASE_JOINTS)
-        gains += [ARM_GAINS[effort >= STRONG_JOINT_NM] for effort in robot.effort]
-        forces = (*(BASE_FORCE,) * len(BASE_JOINTS), *robot.effort)
-        for name, (kp, kv), most in zip(driven, gains, forces, strict=True):
+        gains += [ARM_GAINS[effort >= STRONG_JOINT_NM] for effort in efforts]
+        forces = (*(BASE_FORCE,) * len(BASE_JOINTS), *efforts)
+        for name, (kp, kv), most in zip((*BASE_JOINTS, *joints), gains, forces, strict=True):
             self._add_motor(model, name, kp, kv, most)
-        for finger in robot.fingers:
-            self._add_motor(model, finger.name, *FINGER_GAINS, self._force)
+        for arm, force in zip(self.arms, self._forces, strict=True):
+            for finger in arm.fingers:
+                self._add_motor(model, finger.name, *FINGER_GAINS, force)
 
-        for name in self.scene.movable:
-            weld = spec.add_equality(
-                name=body_name(name), type=mujoco.mjtEq.mjEQ_WELD,
-                objtype=mujoco.mjtObj.mjOBJ_BODY, name1=link_body(self.hand_link),
-                name2=body_name(name),
-            )  # fmt: skip
-            weld.active, (weld.solref, weld.solimp) = False, CONTACT_SOFTNESS
+        for number, arm in enumerate(self.arms):
+            for name in self.scene.movable:
+                weld = spec.add_equality(
+                    name=_weld(number, name), type=mujoco.mjtEq.mjEQ_WELD,
+                    objtype=mujoco.mjtObj.mjOBJ_BODY, name1=link_body(arm.hand),
+                    name2=body_name(name),
+                )  # fmt: skip
+                weld.active, (weld.solref, weld.solimp) = False, CONTACT_SOFTNESS
         return model
 
     def _add_motor(self, model: Model, joint: str, kp: float, kv: float, most: float) -> None:
@@ -111,19 +114,22 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
 
     def _index(self) -> None:
         super()._index()
-        model, robot = self._model, self._robot
+        model = self._model
         links = [model.body(number).name for number in range(1, model.nbody)]
         self.robot_links = frozenset(
             name.removeprefix("link:")
             for name in links
             if not name.startswith("body:") and name != "floor"
         )
-        count = len(BASE_JOINTS) + len(robot.joints)
+        count = len(self.conf)
         gains = model.actuator_gainprm[:count, 0]
         self._lead = -model.actuator_biasprm[:count, 2] / gains  # speed's share of the target, s
         self._motors = count
-        self._hand = model.body(link_body(self.hand_link)).id
-        self._welds = {name: model.equality(body_name(name)).id for name in self.scene.movable}
+        self._hands = [model.body(link_body(arm.hand)).id for arm in self.arms]
+        self._welds = [
+            {name: model.equality(_weld(number, name)).id for name in self.scene.movable}
+            for number in range(len(self.arms))
+        ]
         for name in self._passed & self.scene.bodies.keys():
             self.disable_collision(name, True)
 
@@ -137,13 +143,16 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         control[: self._motors] = self.conf
         if rates is not None:
             control[: self._motors] += self._lead * rates
-        wanted = SQUEEZE_AIM_M if self.squeezing else self.opening / 2
-        if not self.squeezing:  # the force ends at once, not when the target has come back
-            self._aims = max(self._aims, min(self.width() / 2, wanted))
+        wanted = [SQUEEZE_AIM_M if hand.squeezing else hand.opening / 2 for hand in self.hands]
+        for number, hand in enumerate(self.hands):
+            if not hand.squeezing:  # the force ends at once, not when the target has come back
+                stands = self._width(number) / 2
+                self._aims[number] = max(self._aims[number], min(stands, wanted[number]))
         for _ in range(steps):
             most = FINGER_SPEED * TIMESTEP_S
-            self._aims += float(np.clip(wanted - self._aims, -most, most))
-            control[self._motors :] = self._aims
+            for number, aim in enumerate(self._aims):
+                self._aims[number] += float(np.clip(wanted[number] - aim, -most, most))
+            control[self._motors :] = np.repeat(self._aims, self._finger_counts)
             self._mujoco.mj_step(self._model, self._data)
         self._fresh = False
         self._ticks += 1
@@ -161,14 +170,19 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
 
     def width(self) -> float:
         """Return how far the fingers are apart, metres."""
-        return float(self._data.qpos[self._fingers].sum())
+        return self._width(self.used)
+
+    def _width(self, number: int) -> float:
+        return float(self._data.qpos[self._fingers[number]].sum())
 
     def tool(self) -> Array:
         """Return the actual T_world_tool (4, 4)."""
+        return self._hand_pose() @ self.arms[self.used].T_hand_tool.matrix
+
+    def _hand_pose(self) -> Array:
         self._refresh()
-        return (
-            pose_of(self._data.xpos[self._hand], self._data.xquat[self._hand]) @ self._T_hand_tool
-        )
+        hand = self._hands[self.used]
+        return pose_of(self._data.xpos[hand], self._data.xquat[hand])
 
     def touches(self) -> dict[tuple[str, str], float]:
         """Return the contact forces, newtons, between the robot's links and bodies, and between
@@ -194,7 +208,7 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         """Check whether both fingers, or the cup, are this near to a body, metres."""
         return all(
             self.distance(self.links[finger], solid, reach) < reach
-            for finger in self.finger_links or (self.hand_link,)
+            for finger in self.finger_links or (self.arms[self.used].hand,)
             for solid in self.solids[body]
         )
 
@@ -203,15 +217,13 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
     def attach(self, body: str) -> None:
         """Fix a body to the hand where it is; the robot passes through it from now on."""
         self.detach()
-        self._refresh()
-        T_world_hand = pose_of(self._data.xpos[self._hand], self._data.xquat[self._hand])
-        T_hand_body = Pose.from_matrix(np.linalg.inv(T_world_hand) @ self.pose(body))
-        weld = self._welds[body]
+        T_hand_body = Pose.from_matrix(np.linalg.inv(self._hand_pose()) @ self.pose(body))
+        weld = self._welds[self.used][body]
         at = [*T_hand_body.position, *wxyz(T_hand_body.quaternion)]
         self._model.eq_data[weld, :3] = 0.0  # the anchor, in the body's frame
         self._model.eq_data[weld, 3:10] = at
         self._data.eq_active[weld] = 1
-        self.bound = body
+        self.hand.bound = body
         self.disable_collision(body, True)
 
     def detach(self) -> None:
@@ -219,8 +231,8 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         says otherwise.
         """
         if self.bound is not None:
-            self._data.eq_active[self._welds[self.bound]] = 0
-            self.bound = None
+            self._data.eq_active[self._welds[self.used][self.bound]] = 0
+            self.hand.bound = None
 
     def disable_collision(self, body: str, passes: bool) -> None:
         """Switch collisions between the robot and a body: whether they do not feel each other."""
@@ -240,18 +252,23 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         """Take bodies away that a scene does not have, and add those that only it has, where it
         says.
         """
-        bound, kept = self.bound, self._state()
-        at_hand = None if bound is None else self._model.eq_data[self._welds[bound]].copy()
+        kept = self._state()
+        bound = {
+            number: (hand.bound, self._model.eq_data[self._welds[number][hand.bound]].copy())
+            for number, hand in enumerate(self.hands)
+            if hand.bound is not None
+        }
         for name in scene.bodies.keys() - self.scene.bodies.keys():
             self._poses[name] = scene.bodies[name].pose.matrix
-        self.scene, self.bound = scene, None
+        self.scene = scene
         self._passed &= scene.bodies.keys()
         self._build()
         self._restore(kept)
-        if bound is not None and bound in scene.bodies:
-            self._model.eq_data[self._welds[bound]] = at_hand
-            self._data.eq_active[self._welds[bound]] = 1
-            self.bound = bound
+        for number, (name, at_hand) in bound.items():
+            self.hands[number].bound = name if name in scene.bodies else None
+            if name in scene.bodies:
+                weld = self._welds[number][name]
+                self._model.eq_data[weld], self._data.eq_active[weld] = at_hand, 1
 
     def _state(self) -> dict[str, tuple[Array, Array]]:
         """Return positions and speeds by joint."""

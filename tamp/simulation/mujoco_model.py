@@ -142,10 +142,12 @@ def _name_robot(model: Model, robot: Robot) -> None:
 def _link_frictions(robot: Robot) -> dict[str, float]:
     """Read <lateral_friction> of the links, as pybullet does."""
     found: dict[str, float] = {}
-    for link in read_xml(robot.urdf).iter("link"):
-        said = link.find("contact/lateral_friction")
-        if said is not None:
-            found[link.get("name", "")] = float(said.get("value", DEFAULT_FRICTION))
+    for arm in robot.arms:
+        for link in read_xml(arm.urdf).iter("link"):
+            said = link.find("contact/lateral_friction")
+            if said is not None:
+                name = arm.prefix + link.get("name", "")
+                found[name] = float(said.get("value", DEFAULT_FRICTION))
     return found
 
 

@@ -10,8 +10,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import start_row
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.mobile_urdf import BASE_JOINTS
@@ -111,13 +113,15 @@ class MujocoWorld(World):
         for link in robot.links:
             self.links[link.name] = self._solid(link.name, model.body(link_body(link.name)).id, -1)
         self._frames = np.array([solid.handle for solid in self.links.values()])
-        driven = (*BASE_JOINTS, *(joint.name for joint in robot.joints))
-        self._driven = np.array([model.joint(name).qposadr[0] for name in driven])
-        self._fingers = np.array(
-            [model.joint(one.name).qposadr[0] for one in robot.fingers], dtype=int
-        )
-        start = self.scene.robot
-        self.set_robot(start.base, start.arm or robot.home, robot.opening)
+        arms = [[joint.name for joint in arm.joints] for arm in robot.arms]
+        self._base, *self._arms = (self._places(names) for names in ([*BASE_JOINTS], *arms))
+        self._driven = np.concatenate([self._base, *self._arms])
+        self._fingers = [self._places([one.name for one in arm.fingers]) for arm in robot.arms]
+        self.set_state(start_row(robot, self.scene.robot))
+
+    def _places(self, joints: Sequence[str]) -> NDArray[np.intp]:
+        """Return where the engine keeps the positions of joints."""
+        return np.array([self._model.joint(name).qposadr[0] for name in joints], dtype=np.intp)
 
     def _solid(self, owner: str, number: int, piece: int) -> Solid:
         """Describe one shape of a body, or all, with the box around it in the body's frame."""
@@ -178,11 +182,15 @@ class MujocoWorld(World):
         return float(np.linalg.norm(moving[:3])), float(np.linalg.norm(moving[3:]))
 
     def set_robot(
-        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float
-    ) -> None:
-        """Put base at x, y, yaw, arm at joint angles, fingers at opening / 2; metres, radians."""
-        self._data.qpos[self._driven] = [*base, *arm]
-        self._data.qpos[self._fingers] = opening / 2
+        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float,
+        number: int = 0,
+    ) -> None:  # fmt: skip
+        """Put base at x, y, yaw, the arm of a number at joint angles, its fingers at opening / 2;
+        metres, radians.
+        """
+        self._data.qpos[self._base] = base
+        self._data.qpos[self._arms[number]] = arm
+        self._data.qpos[self._fingers[number]] = opening / 2
         self._fresh = False
 
     def link_frames(self) -> Array:

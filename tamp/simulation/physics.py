@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
@@ -17,6 +18,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import start_row
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Hull, Part, Scene
 from tamp.simulation.shapes import floor_under, half_extents, link_frame, mass_centre, obj
@@ -27,6 +29,19 @@ from tamp.system.scratch import scratch_folder
 
 HULL_PAD = 0.001
 """Metres by which Bullet pads a convex hull."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Arm:
+    """An arm in the engine: its number, those of its joints and fingers and of the links after the
+    foot; the foot, and its centre of mass, in the base's frame.
+    """
+
+    handle: int
+    joints: list[int]
+    indices: list[int]
+    T_base_foot: Array
+    T_base_com: Array
 
 
 class BulletWorld(World):
@@ -73,27 +88,38 @@ class BulletWorld(World):
             self._move(solid.handle, T_world_body @ solid.offset)
 
     def set_robot(
-        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float
-    ) -> None:
-        """Put base at x, y, yaw, arm at joint angles, fingers at opening / 2; metres, radians."""
+        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float,
+        number: int = 0,
+    ) -> None:  # fmt: skip
+        """Put base at x, y, yaw, the arm of a number at joint angles, its fingers at opening / 2;
+        metres, radians.
+        """
         at = (float(base[0]), float(base[1]), float(base[2]))
         if at != self._base_at:
             T_world_base = Pose.from_xyz_yaw(at[0], at[1], 0.0, at[2]).matrix
             for solid in self._base_solids:
                 self._move(solid.handle, T_world_base @ solid.offset)
-            self._move(self._arm, T_world_base @ self._T_base_com)
+            for one in self._arms:
+                self._move(one.handle, T_world_base @ one.T_base_com)
             self._base_at = at
-            frames = (Pose.from_matrix(T) for T in (T_world_base, T_world_base @ self._T_base_foot))
-            self._base_frames = [(*pose.position, *pose.quaternion) for pose in frames]
-        values = [[float(q)] for q in arm] + [[opening / 2]] * self._fingers_count
+            frames = (T_world_base, *(T_world_base @ one.T_base_foot for one in self._arms))
+            poses = map(Pose.from_matrix, frames)
+            self._base_frames = [(*pose.position, *pose.quaternion) for pose in poses]
+        moved = self._arms[number]
+        values = [[float(q)] for q in arm] + [[opening / 2]] * (len(moved.joints) - len(arm))
         self._bullet.resetJointStatesMultiDof(
-            self._arm, self._joints, values, physicsClientId=self.client
+            moved.handle, moved.joints, values, physicsClientId=self.client
         )
 
     def link_frames(self) -> Array:
         """Return each link's frame, position (m) and quaternion xyzw, shape (l, 7), as `links`."""
-        states = self._bullet.getLinkStates(self._arm, self._indices, physicsClientId=self.client)
-        return np.array(self._base_frames + [link_frame(state) for state in states])
+        frames, (base, *feet) = list[tuple[float, ...]](), self._base_frames
+        for arm, foot in zip(self._arms, feet, strict=True):
+            states = self._bullet.getLinkStates(
+                arm.handle, arm.indices, physicsClientId=self.client
+            )
+            frames += [foot, *(link_frame(state) for state in states)]
+        return np.array([base, *frames])
 
     # What touches what
 
@@ -194,66 +220,69 @@ class BulletWorld(World):
         return Solid(body.name, handle, -1, offset, np.zeros(3), np.full(3, np.inf))
 
     def _add_robot(self, robot: Robot) -> None:
-        bullet, client = self._bullet, self.client
-        base, foot = robot.link(robot.base), robot.link(robot.foot)
+        base = robot.link(robot.base)
         self._base_solids = tuple(self._solid(base.name, part) for part in base.parts)
         if len(self._base_solids) != 1:
             raise InputError(f"the base of the robot '{robot.name}' must be one convex part")
-
-        flags = bullet.URDF_USE_SELF_COLLISION | bullet.URDF_IGNORE_VISUAL_SHAPES
-        self._arm = bullet.loadURDF(
-            str(robot.urdf), useFixedBase=True, flags=flags, physicsClientId=client
-        )
-        inertial = bullet.getDynamicsInfo(self._arm, -1, physicsClientId=client)
-        # The engine's base position is the one of the foot's centre of mass.
-        self._T_foot_com = Pose(inertial[3], inertial[4]).matrix
-        self._T_base_foot = robot.T_base_arm.matrix
-        self._T_base_com = self._T_base_foot @ self._T_foot_com
-
-        index = {foot.name: -1}
-        moving = {joint.name for joint in (*robot.joints, *robot.fingers)}
-        joints: dict[str, int] = {}
-        for number in range(bullet.getNumJoints(self._arm, physicsClientId=client)):
-            info = bullet.getJointInfo(self._arm, number, physicsClientId=client)
-            index[info[12].decode()] = number
-            if info[1].decode() in moving:
-                joints[info[1].decode()] = number
-        self._joints = [joints[one.name] for one in (*robot.joints, *robot.fingers)]
-        self._fingers_count = len(robot.fingers)
-        others = [link.name for link in robot.links if link not in (base, foot)]
-        self._names = others
-        self._indices = [index[name] for name in self._names]
-
         self.links[base.name] = self._base_solids[0]
-        for name in (foot.name, *others):
-            self.links[name] = self._link_solid(name, index[name])
-            self._owners[self._arm, index[name]] = name
+        self._arms = [self._add_arm(arm) for arm in robot.arms]
 
         self._base_at = (math.nan, math.nan, math.nan)
-        start = self.scene.robot
-        self.set_robot(start.base, start.arm or robot.home, robot.opening)
+        self.set_state(start_row(robot, self.scene.robot))
 
-    def _link_solid(self, name: str, index: int) -> Solid:
+    def _add_arm(self, robot: Robot) -> _Arm:
+        bullet, client = self._bullet, self.client
+        flags = bullet.URDF_USE_SELF_COLLISION | bullet.URDF_IGNORE_VISUAL_SHAPES
+        handle = bullet.loadURDF(
+            str(robot.urdf), useFixedBase=True, flags=flags, physicsClientId=client
+        )
+        inertial = bullet.getDynamicsInfo(handle, -1, physicsClientId=client)
+        # The engine's base position is the one of the foot's centre of mass.
+        T_foot_com = Pose(inertial[3], inertial[4]).matrix
+        T_base_foot = robot.T_base_arm.matrix
+
+        index = {robot.foot: -1}
+        moving = {joint.name for joint in (*robot.joints, *robot.fingers)}
+        joints: dict[str, int] = {}
+        for number in range(bullet.getNumJoints(handle, physicsClientId=client)):
+            info = bullet.getJointInfo(handle, number, physicsClientId=client)
+            index[robot.prefix + info[12].decode()] = number
+            if (name := robot.prefix + info[1].decode()) in moving:
+                joints[name] = number
+        still = {robot.base, robot.foot, *robot.standing}
+        others = [link.name for link in robot.links if link.name not in still]
+        for name in (robot.foot, *others):
+            self.links[name] = self._link_solid(name, handle, index[name], T_foot_com)
+            self._owners[handle, index[name]] = name
+        return _Arm(
+            handle,
+            [joints[one.name] for one in (*robot.joints, *robot.fingers)],
+            [index[name] for name in others],
+            T_base_foot,
+            T_base_foot @ T_foot_com,
+        )
+
+    def _link_solid(self, name: str, arm: int, index: int, T_foot_com: Array) -> Solid:
         # The box around the link at its reset pose, taken from the engine and not from the
         # planner's hulls: here all joints are zero, so the link's frame is turned against the
         # world's; the box of its box is a little larger.
         bullet, client = self._bullet, self.client
         low, high = (
-            np.array(corner) for corner in bullet.getAABB(self._arm, index, physicsClientId=client)
+            np.array(corner) for corner in bullet.getAABB(arm, index, physicsClientId=client)
         )
         if index < 0:
             T_world_com = Pose(
-                *bullet.getBasePositionAndOrientation(self._arm, physicsClientId=client)
+                *bullet.getBasePositionAndOrientation(arm, physicsClientId=client)
             ).matrix
-            T_world_link = T_world_com @ np.linalg.inv(self._T_foot_com)
+            T_world_link = T_world_com @ np.linalg.inv(T_foot_com)
         else:
             state = bullet.getLinkState(
-                self._arm, index, computeForwardKinematics=1, physicsClientId=client
+                arm, index, computeForwardKinematics=1, physicsClientId=client
             )
             T_world_link = Pose(state[4], state[5]).matrix
         centre = T_world_link[:3, :3].T @ ((low + high) / 2 - T_world_link[:3, 3])
         half = np.abs(T_world_link[:3, :3].T) @ (high - low) / 2
-        return Solid(name, self._arm, index, np.eye(4), centre, half, HULL_PAD)
+        return Solid(name, arm, index, np.eye(4), centre, half, HULL_PAD)
 
     def _move(self, handle: int, T_world: Array) -> None:
         pose = Pose.from_matrix(T_world)

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Self
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import columns
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
 from tamp.simulation.solid import Solid
@@ -61,9 +62,22 @@ class World(ABC):
 
     @abstractmethod
     def set_robot(
-        self, base: Sequence[float] | Array, arm: Sequence[float] | Array, opening: float
+        self,
+        base: Sequence[float] | Array,
+        arm: Sequence[float] | Array,
+        opening: float,
+        number: int = 0,
     ) -> None:
-        """Put base at x, y, yaw, arm at joint angles, fingers at opening / 2; metres, radians."""
+        """Put base at x, y, yaw, the arm of a number at joint angles, its fingers at opening / 2;
+        metres, radians.
+        """
+
+    def set_state(self, row: Array) -> None:
+        """Put the robot in a state: x, y, yaw, then of each arm q1..qn and the opening."""
+        if self.robot is not None:
+            for number, where in enumerate(columns(self.robot)):
+                own = row[where]
+                self.set_robot(row[:3], own[:-1], float(own[-1]), number)
 
     @abstractmethod
     def link_frames(self) -> Array:

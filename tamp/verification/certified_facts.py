@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import rest_row, with_arm
 from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile
 from tamp.plan.violation import Violation
@@ -16,7 +17,7 @@ from tamp.simulation.world import World
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.collision_sweep import MAX_PENETRATION_M, CollisionFindings, Sweeper
 from tamp.verification.execution_state import Held
-from tamp.verification.holding import why_not_held
+from tamp.verification.hands import Hands
 from tamp.verification.initial_state import owner_of
 from tamp.verification.limits import RANGE_TOLERANCE
 from tamp.verification.makers_limits import limits_of
@@ -25,8 +26,11 @@ POSE_DIFFERENCE_M = 0.001
 """Metres by which two poses that should be one may differ."""
 POSE_DIFFERENCE_RAD = math.radians(0.5)
 """Radians by which they may be turned."""
-EMPTY_PLACE_M = (0.0, -300.0)
-"""Metres x, y: where nothing else is."""
+OF_AN_ARM = frozenset(
+    {"reachable", "grasp", "kin", "exchange", "handover-motion", "pick-motion", "place-motion",
+     "approach", "approach-clear", "reach-clear"}
+)  # fmt: skip
+"""Predicates that may be of one of several arms, which comes first then."""
 
 
 class Certified:
@@ -47,6 +51,9 @@ class Certified:
         )
 
         self._bodies = {name.lower(): name for name in world.scene.bodies}
+        self._arms = {arm.arm: number for number, arm in enumerate(robot.arms)}
+        self._arm = 0
+        self._hands = Hands(world, robot, sweeper)
         self._checks: dict[str, tuple[str, Callable[[list[str]], str | None]]] = {
             "pose": ("op", lambda _: None),
             "reachable": ("op", lambda _: None),  # advice: what rests on it is checked itself
@@ -69,6 +76,8 @@ class Certified:
             "base-motion": ("bt", self._base_motion),
             "pick-motion": ("opgbqt", self._kinematics),
             "place-motion": ("opgbqt", self._kinematics),
+            "exchange": ("ogagbpqq", self._exchange),
+            "handover-motion": ("ogagbpqqt", self._exchange),
             "approach": ("opg", self._approach),
             "approach-clear": ("opgop", self._approach_clear),
             "pose-clear": ("opop", self._pose_clear),
@@ -81,7 +90,8 @@ class Certified:
         declared = self._domain.predicates
         return {
             name for name, (kinds, _) in self._checks.items()
-            if name in declared and len(declared[name].parameters) == len(kinds)
+            if name in declared
+            and len(declared[name].parameters) in (len(kinds), len(kinds) + (name in OF_AN_ARM))
         }  # fmt: skip
 
     def check(self, facts: Iterable[Fact], trusted: Counter[str]) -> Iterator[Violation]:
@@ -104,16 +114,34 @@ class Certified:
                 trusted[predicate] += 1
             else:
                 kinds, check = self._checks[predicate]
-                why = self._malformed(kinds, terms) or check(terms)
+                rest = self._of_arm(predicate, kinds, terms)
+                if rest is None:
+                    why = f"'{terms[0]}' is no arm"
+                else:
+                    why = self._malformed(kinds, rest) or check(rest)
                 if why:
                     bodies = tuple(term for term in terms if term in self._bodies)
                     yield Violation("certified", f"{text} does not hold: {why}", bodies=bodies)
 
-    def why_not_held(self, body: str, T_tool_body: Array, opening: float) -> str | None:
-        """Say why the hand at an opening does not hold a body at T_tool_body; None when it does."""
-        world, robot = self._world, self._robot
-        T_world_tool = self._sweeper.tool(np.array([*EMPTY_PLACE_M, 0.0, *robot.home, opening]))
-        return why_not_held(world, robot, body, T_world_tool, T_tool_body, opening)
+    def _of_arm(self, predicate: str, kinds: str, terms: list[str]) -> list[str] | None:
+        """Return a fact's terms without the arm that it is of, the first one where it names none;
+        None where that is no arm.
+        """
+        self._arm = 0
+        if predicate not in OF_AN_ARM or len(terms) != len(kinds) + 1:
+            return terms
+        if terms[0] not in self._arms:
+            return None
+        self._arm = self._arms[terms[0]]
+        return terms[1:]
+
+    def why_not_held(
+        self, body: str, T_tool_body: Array, opening: float, arm: int = 0
+    ) -> str | None:
+        """Say why an arm's fingers at an opening do not hold a body at T_tool_body; None when they
+        do.
+        """
+        return self._hands.why_not_held(body, T_tool_body, opening, arm)
 
     def _malformed(self, kinds: str, terms: list[str]) -> str | None:
         types = {"p": "pose", "g": "grasp", "b": "base-conf", "q": "reach", "t": "motion"}
@@ -122,6 +150,8 @@ class Certified:
         for kind, term in zip(kinds, terms, strict=True):
             if kind == "o" and term not in self._bodies:
                 return f"'{term}' is not a body"
+            if kind == "a" and term not in self._arms:
+                return f"'{term}' is no arm"
             if kind in types:
                 value = self._plan.values.get(term)
                 if value is None or value.type != types[kind]:
@@ -153,7 +183,7 @@ class Certified:
         hold: Hold = self._plan.values[terms[1]].data
         if hold.body != terms[0]:
             return f"{terms[1]} is a grasp of {hold.body}"
-        return self.why_not_held(self._bodies[terms[0]], hold.T_tool_body, hold.opening)
+        return self.why_not_held(self._bodies[terms[0]], hold.T_tool_body, hold.opening, self._arm)
 
     def _base_conf(self, terms: list[str]) -> str | None:
         x, y, _ = self._plan.values[terms[0]].data
@@ -168,16 +198,32 @@ class Certified:
         if self._beyond(approach, lift):
             return "the path leaves the joints' limits"
         for joints in (approach[-1], lift[0]):
-            T_world_tool = self._sweeper.tool(np.array([*base, *joints, hold.opening]))
+            row = with_arm(
+                self._robot, rest_row(self._robot, base), self._arm, joints, hold.opening
+            )
+            T_world_tool = self._sweeper.tool(row, self._arm)
             moved, turned = pose_difference(T_world_tool @ hold.T_tool_body, pose)
             if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 return f"the hand would hold it {off} from there"
         return None
 
+    def _exchange(self, terms: list[str]) -> str | None:
+        """Say why two arms do not hold a body at once; the first is the fact's own arm."""
+        body, grasp, taker, other, base, pose, gives, takes = terms[:8]
+        giver = self._arm
+        if giver == self._arms[taker]:
+            return "an arm hands nothing over to itself"
+        for arm, held, reach in ((giver, grasp, gives), (self._arms[taker], other, takes)):
+            self._arm = arm
+            why = self._kinematics([body, pose, held, base, reach])
+            if why:
+                return f"{self._robot.arms[arm].arm}: {why}"
+        return None
+
     def _beyond(self, *paths: Array) -> bool:
         """Check whether joint positions (n, joints) are out of the limits."""
-        limits = limits_of(self._robot)
+        limits = limits_of(self._robot.arms[self._arm])
         lower = np.array(limits.lower) - RANGE_TOLERANCE
         upper = np.array(limits.upper) + RANGE_TOLERANCE
         return any(bool(((path < lower) | (path > upper)).any()) for path in paths)
@@ -204,8 +250,7 @@ class Certified:
         pose, hold = (self._plan.values[term].data for term in terms[1:3])
         T_world_tool = pose @ np.linalg.inv(hold.T_tool_body)
         hits = (
-            self._hand_hits(name, T_world_tool, self._robot.opening)
-            for name in self._world.scene.fixed
+            self._hands.meets(name, T_world_tool, self._arm) for name in self._world.scene.fixed
         )
         return next((hit for hit in hits if hit), None)
 
@@ -215,25 +260,7 @@ class Certified:
             return None
         pose, hold = (self._plan.values[term].data for term in terms[1:3])
         self._world.place(other, self._plan.values[terms[4]].data)
-        return self._hand_hits(other, pose @ np.linalg.inv(hold.T_tool_body), self._robot.opening)
-
-    def _hand_hits(self, other: str, T_world_tool: Array, opening: float) -> str | None:
-        """Say how deep the hand at a tool pose is in a body, which is brought to a robot aside."""
-        world = self._world
-        T_tool_other = np.linalg.inv(T_world_tool) @ world.pose(other)
-        if not self._sweeper.hand_may_meet(other, T_tool_other, opening):
-            return None
-        T_aside_tool = self._sweeper.tool(
-            np.array([*EMPTY_PLACE_M, 0.0, *self._robot.home, opening])
-        )
-        T_before = world.pose(other)
-        world.place(other, T_aside_tool @ T_tool_other)
-        links = [world.links[name] for name in self._sweeper.hand]
-        depth = max(-world.distance(link, solid) for link in links for solid in world.solids[other])
-        world.place(other, T_before)
-        if depth <= MAX_PENETRATION_M:
-            return None
-        return f"the hand is {1000 * depth:.1f} mm in {other}"
+        return self._hands.meets(other, pose @ np.linalg.inv(hold.T_tool_body), self._arm)
 
     def _reach_clear(self, terms: list[str]) -> str | None:
         other = self._bodies[terms[5]]
@@ -244,10 +271,12 @@ class Certified:
             return "the path leaves the joints' limits"
         self._world.place(other, self._plan.values[terms[6]].data)
         findings = CollisionFindings(clearance=False)
-        held = Held(self._bodies[terms[0]], hold.T_tool_body)
-        ways = ((approach, self._robot.opening, None), (lift, hold.opening, held))
+        robot, arm = self._robot, self._arm
+        held = Held(self._bodies[terms[0]], hold.T_tool_body, arm=arm)
+        ways = ((approach, robot.arms[arm].opening, ()), (lift, hold.opening, (held,)))
+        rest = rest_row(robot, base)
         for path, opening, carried in ways:
-            rows = np.array([[*base, *joints, opening] for joints in path])
+            rows = np.array([with_arm(robot, rest, arm, joints, opening) for joints in path])
             times = np.arange(len(rows), dtype=float)
             self._sweeper.sweep(rows, times, carried, findings, against=frozenset({other}))
         worst = min(findings.worst.values(), key=lambda contact: contact.distance, default=None)

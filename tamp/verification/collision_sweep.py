@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
+from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
 from tamp.verification.broad_phase import (
     Advancement,
@@ -18,7 +20,7 @@ from tamp.verification.broad_phase import (
     near_still,
     radius,
 )
-from tamp.verification.execution_state import Held
+from tamp.verification.execution_state import Held, carried
 from tamp.verification.trajectory_sampling import Motion, Sampler
 
 MAX_PENETRATION_M = 0.001
@@ -98,7 +100,8 @@ class CollisionFindings:
 
 
 class Sweeper:
-    """Looks for collisions of a world's robot. A state is [x, y, yaw, q1..qn, opening], m and rad.
+    """Looks for collisions of a world's robot. A state is [x, y, yaw, then q1..qn, opening of each
+    arm], m and rad.
 
     Attributes:
         together: How deep bodies, sorted by name, lie in each other at the start, metres; they may
@@ -110,7 +113,8 @@ class Sweeper:
         self._sampler = Sampler(world, robot)
         self._names = list(world.links)
         self._solids = list(world.links.values())
-        self.hand = robot.grippers
+        self._hands = [arm.grippers for arm in robot.arms]
+        self.hand = frozenset[str]().union(*self._hands)
         self.together: dict[tuple[str, str], float] = {}
         count = len(self._names)
         pairs = [(i, j) for i in range(count) for j in range(i + 1, count)]
@@ -118,17 +122,17 @@ class Sweeper:
             (i, j) for i, j in pairs if _sorted(self._names[i], self._names[j]) not in robot.allowed
         ]
 
-    def tool(self, row: Array) -> Array:
-        """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
-        return self._sampler.tool(row)
+    def tool(self, row: Array, arm: int = 0) -> Array:
+        """Compute T_world_tool (4, 4) of an arm in a state, by the engine's forward kinematics."""
+        return self._sampler.tool(row, arm)
 
-    def hand_may_meet(self, other: str, T_tool_other: Array, opening: float) -> bool:
+    def hand_may_meet(self, other: str, T_tool_other: Array, opening: float, arm: int = 0) -> bool:
         """Tell whether the hand may be within CLEARANCE_RANGE_M of a body.
 
         The body is at T_tool_other in the tool frame.
         """
         far = (
-            self._sampler.hand_radius(opening)
+            self._sampler.hand_radius(opening, arm)
             + radius(self._world.solids[other])
             + CLEARANCE_RANGE_M
         )
@@ -138,7 +142,7 @@ class Sweeper:
         self,
         rows: Array,
         times: Array,
-        held: Held | None,
+        held: Sequence[Held],
         findings: CollisionFindings,
         usual: ExpectedContacts = ExpectedContacts(),
         against: frozenset[str] | None = None,
@@ -148,14 +152,14 @@ class Sweeper:
         Args:
             rows: Shape (n, 4 + joints).
             times: Seconds, shape (n,).
-            held: What is in the hand; it follows it.
+            held: What is in the hands; it follows them.
             findings: Receives what is met.
             usual: Nearness that is no matter of clearance, and contact that is no collision.
             against: Look only at these bodies, and not at the robot itself.
         """
-        carried = {one.body for one in held.all} if held else set[str]()
+        taken = {one.body for one in carried(held)}
         asked = self._world.solids if against is None else against
-        bodies = [body for body in self._world.solids if body in asked and body not in carried]
+        bodies = [body for body in self._world.solids if body in asked and body not in taken]
         still = at_rest(self._world, bodies)
         expected = self._expected(still, held, usual)
 
@@ -170,7 +174,7 @@ class Sweeper:
                 if against is None:
                     self._against_itself(block, held, findings, within)
 
-    def _expected(self, still: Still, held: Held | None, usual: ExpectedContacts) -> Array:
+    def _expected(self, still: Still, held: Sequence[Held], usual: ExpectedContacts) -> Array:
         """Mark pairs of movers and pieces at rest, shape (movers, pieces): 1 where a contact counts
         and a near miss does, 0 where only a contact does, -1 where neither.
         """
@@ -191,7 +195,7 @@ class Sweeper:
     def _against_bodies(
         self,
         motion: Motion,
-        held: Held | None,
+        held: Sequence[Held],
         findings: CollisionFindings,
         still: Still,
         expected: Array,
@@ -223,20 +227,12 @@ class Sweeper:
     def _against_itself(
         self,
         motion: Motion,
-        held: Held | None,
+        held: Sequence[Held],
         findings: CollisionFindings,
         advancement: Advancement,
     ) -> None:
         movers = self._sampler.movers(held)
-        pairs = list(self._self_pairs)
-        if held is not None:
-            links = range(len(self._solids))
-            arm = [i for i in links if self._names[i] not in self.hand]
-            pairs += [
-                (k, i)
-                for k in range(len(links), len(movers))
-                for i in (arm if movers[k].owner == held.body else links)
-            ]
+        pairs = [*self._self_pairs, *self._pairs_of_held(movers, held)]
 
         current = -1
         for state, number in near_itself(motion, np.array(pairs)):
@@ -252,11 +248,26 @@ class Sweeper:
                 time = float(motion.times[state])
                 findings.record(Contact(movers[i].owner, movers[j].owner, distance, time), False)
 
-    def _pose(self, motion: Motion, state: int, held: Held | None) -> None:
+    def _pairs_of_held(
+        self, movers: Sequence[Solid], held: Sequence[Held]
+    ) -> Iterator[tuple[int, int]]:
+        """Yield which movers what is held may meet: all links but those that hold it, and what
+        another hand holds.
+        """
+        first = len(self._solids)
+        arms = {one.body: one.arm for one in carried(held)}
+        holders = {one.body: self._hands[one.arm] for one in held}
+        for k in range(first, len(movers)):
+            body = movers[k].owner
+            own = holders.get(body, frozenset[str]())
+            yield from ((k, i) for i in range(first) if self._names[i] not in own)
+            yield from ((k, i) for i in range(first, k) if arms[movers[i].owner] != arms[body])
+
+    def _pose(self, motion: Motion, state: int, held: Sequence[Held]) -> None:
         row = motion.rows[state]
-        self._world.set_robot(row[:3], row[3:-1], row[-1])
+        self._world.set_state(row)
         piece = len(self._solids)
-        for one in held.all if held else ():
+        for one in carried(held):
             self._world.place(one.body, motion.frames[piece, state])
             piece += len(self._world.solids[one.body])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from tamp.geometric.scene.pose import Array
@@ -9,11 +10,14 @@ from tamp.geometric.scene.pose import Array
 
 @dataclass(frozen=True, eq=False)
 class Held:
-    """A body in the hand: T_tool_body, shape (4, 4); and its load, what is carried on it."""
+    """A body in the hand of the arm of a number: T_tool_body, shape (4, 4); and its load, what is
+    carried on it.
+    """
 
     body: str
     T_tool_body: Array
     load: tuple[Held, ...] = ()
+    arm: int = 0
 
     @property
     def all(self) -> tuple[Held, ...]:
@@ -23,13 +27,25 @@ class Held:
 
 @dataclass(eq=False)
 class ExecutionState:
-    """The robot's row [x, y, yaw, q1..qn, opening] in m and rad, what it holds, the time in s."""
+    """The robot's row [x, y, yaw, then q1..qn, opening of each arm] in m and rad, what the arms of
+    these numbers hold, the time in s.
+    """
 
     row: Array
-    held: Held | None
+    hands: dict[int, Held]
     time: float
 
     @property
-    def in_hand(self) -> str | None:
-        """Return the held body's name."""
-        return None if self.held is None else self.held.body
+    def held(self) -> tuple[Held, ...]:
+        """Return what is held, each body once."""
+        return tuple({held.body: held for held in self.hands.values()}.values())
+
+    @property
+    def in_hand(self) -> frozenset[str]:
+        """Return the held bodies' names."""
+        return frozenset(held.body for held in self.hands.values())
+
+
+def carried(held: Iterable[Held]) -> list[Held]:
+    """Return all that is held, with what is carried on it."""
+    return [one for hand in held for one in hand.all]

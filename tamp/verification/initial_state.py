@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -15,7 +15,9 @@ from tamp.symbolic.pddl.structs import Domain, Fact
 
 FLUENT_ARITY = {"at-pose": 2, "holding": 2, "hand-empty": 0, "at-base": 1, "riding": 4}
 """Fluents whose geometric meaning we know."""
-KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container"})
+OF_AN_ARM = frozenset({"holding", "hand-empty"})
+"""Those of them that may be of one of several arms, which comes first then."""
+KINDS_OF_OBJECTS = frozenset({"body", "movable", "fixed", "surface", "container", "arm"})
 """Types that the scene decides about."""
 START_TOLERANCE = 1e-6
 """Metres or radians by which a start in the plan may differ from the problem's."""
@@ -24,21 +26,28 @@ START_TOLERANCE = 1e-6
 def has_standard_meaning(domain: Domain, predicate: str) -> bool:
     """Tell whether the domain's predicate is the fluent of that name whose meaning we know."""
     declared = domain.predicates.get(predicate)
-    return declared is not None and len(declared.parameters) == FLUENT_ARITY[predicate]
+    if declared is None:
+        return False
+    more = len(declared.parameters) - FLUENT_ARITY[predicate]
+    return more == 0 or (more == 1 and predicate in OF_AN_ARM)
 
 
-def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Violation]:
-    """Check that the plan's objects are the scene's, and what it says of them is so."""
+def check_objects(
+    plan: PlanFile, scene: Scene, domain: Domain, arms: Sequence[str]
+) -> Iterator[Violation]:
+    """Check that the plan's objects are the scene's and the robot's arms, and what it says of them
+    is so.
+    """
     bodies = {name.lower(): body for name, body in scene.bodies.items()}
     places = {name.lower() for name in (*scene.surfaces, *scene.cavities)}
     for name, types in plan.objects.items():
         value = plan.values.get(name)
         if value is not None and types in ((value.type,), ("object",)):
             continue
-        if name not in bodies and name not in places and name not in domain.constants:
+        if name not in {*bodies, *places, *arms, *domain.constants}:
             yield Violation("initial", f"the problem has no '{name}'", bodies=(name,))
             continue
-        truths = kinds_of(scene, name)
+        truths = kinds_of(scene, name) | ({"arm"} if name in arms else set())
         for type_ in types:
             if type_ in KINDS_OF_OBJECTS and type_ not in truths:
                 yield Violation("initial", f"'{name}' is not {type_}", bodies=(name,))
@@ -50,8 +59,9 @@ def check_objects(plan: PlanFile, scene: Scene, domain: Domain) -> Iterator[Viol
 
 
 def check_initial(
-    plan: PlanFile, scene: Scene, domain: Domain, given: frozenset[Fact], static: set[str]
-) -> Iterator[Violation]:
+    plan: PlanFile, scene: Scene, domain: Domain, given: frozenset[Fact], static: set[str],
+    arms: Sequence[str],
+) -> Iterator[Violation]:  # fmt: skip
     """Check that the plan's initial facts are those that the scene and the problem's `init` imply.
 
     Args:
@@ -61,6 +71,7 @@ def check_initial(
         given: The problem's own initial facts.
         static: Predicates that are verified as certified facts, and may stand among the initial
             ones.
+        arms: Names of the robot's arms.
     """
     facts = set(plan.initial)
     for fact in sorted(given - facts):
@@ -73,12 +84,13 @@ def check_initial(
         predicate, *terms = fact
         text = f"({' '.join(fact)})"
         standard = predicate in FLUENT_ARITY and has_standard_meaning(domain, predicate)
-        if standard and len(terms) != FLUENT_ARITY[predicate]:
+        if standard and len(terms) != len(domain.predicates[predicate].parameters):
             yield Violation("initial", f"{text} has a wrong number of arguments")
         elif (
             fact in given
             or (not standard and predicate in static)
             or _is_kind(fact, plan, scene, domain)
+            or (predicate == "arm" and tuple(terms) in {(arm,) for arm in arms})
         ):
             continue
         elif standard and predicate == "at-pose" and terms[0] in bodies:
@@ -113,9 +125,14 @@ def check_initial(
                 )
 
     for predicate in ("hand-empty", "at-base"):
-        count = sum(fact[0] == predicate for fact in facts)
-        if has_standard_meaning(domain, predicate) and count != 1:
-            yield Violation("initial", f"{predicate} holds {count} times at the start")
+        if not has_standard_meaning(domain, predicate):
+            continue
+        stated = {fact[1:] for fact in facts if fact[0] == predicate}
+        by_arm = len(domain.predicates[predicate].parameters) > FLUENT_ARITY[predicate]
+        if by_arm and stated != {(arm,) for arm in arms}:
+            yield Violation("initial", f"{predicate} does not hold of each arm once at the start")
+        elif not by_arm and len(stated) != 1:
+            yield Violation("initial", f"{predicate} holds {len(stated)} times at the start")
 
 
 def kinds_of(scene: Scene, name: str) -> set[str]:

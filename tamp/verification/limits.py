@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import arm_of
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.plan.read import PlanFile, Segment
@@ -45,7 +46,7 @@ def limit_violations(
     segments: Sequence[Segment], robot: Robot, room: Room
 ) -> Iterator[LimitViolation]:
     """Yield each limit's worst excess in segments of a part that starts and ends at rest."""
-    part = segments[0].part
+    part, robot = segments[0].part, arm_of(robot, segments[0].arm)
     times, rows = _joined(segments)
 
     steps = np.diff(times)
@@ -140,7 +141,7 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
     """
     for index, action in enumerate(plan.actions):
         offset = action.start
-        for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
+        for _, group in itertools.groupby(action.segments, key=moving_part):
             segments = list(group)
             for excess in limit_violations(segments, robot, room):
                 if excess.kind == "limit":
@@ -150,6 +151,11 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
                         what, file=plan.file, remedy="tamp-verify says all that is wrong with it"
                     )
             offset += sum(float(segment.times[-1]) for segment in segments)
+
+
+def moving_part(segment: Segment) -> tuple[str, str | None]:
+    """Return which part of the robot a segment moves, and of which arm."""
+    return segment.part, segment.arm
 
 
 def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import rest_row
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.world import World
 
@@ -54,7 +55,8 @@ class _Motion:
 
 
 class LinkFrames:
-    """Computes links' frames. A state is [x, y, yaw, q1..qn, opening], metres and radians.
+    """Computes links' frames. A state is [x, y, yaw, then q1..qn, opening of each arm], metres and
+    radians.
 
     Attributes:
         measured: Whether the measured joints give the engine's frames; else it is asked each time.
@@ -62,11 +64,12 @@ class LinkFrames:
 
     def __init__(self, world: World, robot: Robot) -> None:
         self._world = world
-        self._zero_frames = self._asked(np.zeros(len(robot.joints) + 1))
+        count = len(rest_row(robot)) - 3
+        self._zero_frames = self._asked(np.zeros(count))
         self._motions: list[tuple[int, _Motion]] = []
         self._paths: list[tuple[int, ...]] = [() for _ in self._zero_frames]
-        for joint in range(len(robot.joints) + 1):
-            self._measure(joint, len(robot.joints) + 1)
+        for joint in range(count):
+            self._measure(joint, count)
         self.measured = self._agrees(robot)
 
     def __call__(self, rows: Array) -> Array:
@@ -77,7 +80,7 @@ class LinkFrames:
         """Ask the engine for the same, state by state."""
         asked = []
         for row in rows:
-            self._world.set_robot(row[:3], row[3:-1], row[-1])
+            self._world.set_state(row)
             asked.append(self._world.link_frames())
         stacked = np.stack(asked, axis=1)
         return matrices(stacked.reshape(-1, 7)).reshape(*stacked.shape[:2], 4, 4)
@@ -125,7 +128,8 @@ class LinkFrames:
 
     def _agrees(self, robot: Robot) -> bool:
         """Tell whether computed frames are the engine's, in states spread over the joints' span."""
-        low, high = np.array([*robot.lower, 0.0]), np.array([*robot.upper, robot.opening])
+        low = np.array([limit for arm in robot.arms for limit in (*arm.lower, 0.0)])
+        high = np.array([limit for arm in robot.arms for limit in (*arm.upper, arm.opening)])
         trials = np.arange(1.0, TRIALS + 1)[:, None]
         shares = (trials * np.arange(1.0, 1 + len(low)) * math.sqrt(2)) % 1.0
         bases = trials * np.array([0.3, -0.2, 0.7])

@@ -11,7 +11,7 @@ from tamp.plan.read import Hold, PlanFile
 from tamp.simulation.world import World
 from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD
 from tamp.verification.collision_sweep import Sweeper
-from tamp.verification.execution_state import ExecutionState, Held
+from tamp.verification.execution_state import ExecutionState, Held, carried
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_relations import SupportRelations
@@ -37,11 +37,13 @@ class Loads:
         self._meant = has_standard_meaning(semantics.domain, "riding")
         self._upright: dict[str, Array] = {}
 
-    def on(self, hold: Hold, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
+    def on(
+        self, hold: Hold, body: str, T_world_tool: Array, state: State, arm: int
+    ) -> tuple[Held, ...]:
         """Return what rides on a body that the hand closes on, of which it is felt that it rests
         there; the rest is left behind. The plan must say the same of it.
         """
-        load = self._riders(body, T_world_tool, state) if self._meant else ()
+        load = self._riders(body, T_world_tool, state, arm) if self._meant else ()
         says, rides = {name for name, _ in hold.load}, {one.body.lower() for one in load}
         if says != rides:
             told, true = (" and ".join(sorted(names)) or "nothing" for names in (says, rides))
@@ -57,29 +59,33 @@ class Loads:
                 self._log.add("grasp", message, name, body, depth=moved)
         return load
 
-    def _riders(self, body: str, T_world_tool: Array, state: State) -> tuple[Held, ...]:
+    def _riders(self, body: str, T_world_tool: Array, state: State, arm: int) -> tuple[Held, ...]:
         self._upright[body] = self._world.pose(body)[2, :3].copy()
         load: list[Held] = []
         for rider, _, below, _ in state.all("riding"):
             name = self._bodies.get(rider)
             if name is None or below != body.lower():
                 continue
-            on = self._supports.stand(name, None).on
+            on = self._supports.stand(name, frozenset()).on
             if on != {body}:
                 supports = ", ".join(sorted(on)) or "nothing"
                 self._log.add(
                     "grasp", f"{name} does not ride on {body}: it rests on {supports}", name
                 )
                 continue
-            load.append(Held(name, np.linalg.inv(T_world_tool) @ self._world.pose(name)))
+            T_tool_rider = np.linalg.inv(T_world_tool) @ self._world.pose(name)
+            load.append(Held(name, T_tool_rider, arm=arm))
         return tuple(load)
 
-    def check_level(self, held: Held | None, rows: Array, sweeper: Sweeper) -> None:
+    def check_level(self, held: Held, rows: Array, sweeper: Sweeper) -> None:
         """Check that a body with others on it does not lean on the way through states (n, 11)."""
-        if held is None or not held.load:
+        if not held.load:
             return
         up = self._upright[held.body]
-        leans = [float((sweeper.tool(row)[2, :3] @ held.T_tool_body[:3, :3]) @ up) for row in rows]
+        leans = [
+            float((sweeper.tool(row, held.arm)[2, :3] @ held.T_tool_body[:3, :3]) @ up)
+            for row in rows
+        ]
         lean = math.acos(max(-1.0, min(1.0, min(leans))))
         if lean > LOADED_TILT_RAD:
             others = " and ".join(one.body for one in held.load)
@@ -101,6 +107,6 @@ class Loads:
                 off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
                 message = f"{name} is {off} from where it rides on {below}"
                 self._log.add("state", message, name, depth=moved)
-            load = {one.body for one in course.held.load} if course.held else set[str]()
-            if course.in_hand == below and name not in load:
+            load = {one.body for one in carried(course.held)}
+            if below in course.in_hand and name not in load:
                 self._log.add("state", f"{name} does not ride on {below}", name)

@@ -59,7 +59,7 @@ class Relations:
         self.answers: Counter[str] = Counter()
         self.silent: dict[str, str] = {}
 
-    def observed(self, state: State, in_hand: str | None) -> State:
+    def observed(self, state: State, in_hand: frozenset[str]) -> State:
         """Add to a state what classifiers say of bodies now, and would say of the plan's poses."""
         if not self._asked:
             return state
@@ -79,7 +79,11 @@ class Relations:
         return State.of(facts)
 
     def _said(
-        self, relation: Relation, classifier: Classifier, at: Mapping[str, str], in_hand: str | None
+        self,
+        relation: Relation,
+        classifier: Classifier,
+        at: Mapping[str, str],
+        in_hand: frozenset[str],
     ) -> Iterator[tuple[Fact, bool | None]]:
         """Yield facts of a relation, and whether they hold; None if the classifier cannot tell."""
         world = self._world
@@ -102,9 +106,7 @@ class Relations:
                     answer = self._elsewhere[facts[0]]
                 else:
                     placed = {names[body]: self._value(pose) for body, pose in where.items()}
-                    there = moved(
-                        world.scene, seen | placed, in_hand if in_hand not in placed else None
-                    )
+                    there = moved(world.scene, seen | placed, in_hand - placed.keys())
                     answer = self._elsewhere[facts[0]] = self._ask(
                         relation, classifier, there, words
                     )

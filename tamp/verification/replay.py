@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import columns, start_row
 from tamp.geometric.scene.pose import Array, base_difference, pose_difference
 from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
 from tamp.simulation.world import World
@@ -16,8 +17,8 @@ from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD, Certified
 from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
-from tamp.verification.execution_state import ExecutionState, Held
-from tamp.verification.limits import limit_violations
+from tamp.verification.execution_state import ExecutionState, Held, carried
+from tamp.verification.limits import limit_violations, moving_part
 from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
 from tamp.verification.semantics import Semantics, State
@@ -61,13 +62,13 @@ class Replay:
         self.findings = CollisionFindings()
         rows = sum(len(segment.times) for action in plan.actions for segment in action.segments)
         self._looks, self._looks_beyond = MAX_STATES_AT_FIRST + LOOKS_A_ROW * rows, LOOKS_BEYOND
-        self._agreement = Agreement(plan, world, semantics.domain, self.log)
+        self._agreement = Agreement(plan, world, robot, semantics.domain, self.log)
         self._supports = SupportRelations(plan, world, semantics, certified.checkable, self.log)
         self._loads = Loads(plan, world, semantics, self._supports, self.log)
         self._state = State.of(())
-        start = world.scene.robot
-        arm = start.arm if start.arm is not None else robot.home
-        self.course = ExecutionState(np.array([*start.base, *arm, robot.opening]), None, 0.0)
+        self.course = ExecutionState(start_row(robot, world.scene.robot), {}, 0.0)
+        self._columns = columns(robot)
+        self._arms = {arm.arm: number for number, arm in enumerate(robot.arms)}
 
     @property
     def notes(self) -> list[str]:
@@ -79,7 +80,7 @@ class Replay:
         state = State.of((*self._plan.initial, *self._plan.certified))
         state = self._relations.observed(state, self.course.in_hand)
         note_touching(self._world, self._sweeper, self.log)
-        self._supports.check_relations(state, None)
+        self._supports.check_relations(state, self.course.in_hand)
 
         for index, action in enumerate(self._plan.actions):
             self.log.action, self.log.time = (index, action.name), self.course.time
@@ -161,7 +162,7 @@ class Replay:
     def _check_limits(self, action: TimedAction) -> bool:
         """Check that an action keeps the limits that bound its motions."""
         offset, kept = action.start, True
-        for _, group in itertools.groupby(action.segments, key=lambda segment: segment.part):
+        for _, group in itertools.groupby(action.segments, key=moving_part):
             segments = list(group)
             for excess in limit_violations(segments, self._robot, self._world.scene.room):
                 at = offset + excess.time
@@ -176,40 +177,49 @@ class Replay:
         course = self.course
         if abs(segment.times[0]) > TIME_TOLERANCE_S:
             self.log.add("time", f"the {segment.part}'s times do not start at 0")
-        rows = self._rows(segment)
+        arm = self._arm(segment)
+        rows = self._rows(segment, arm)
         if segment.detach is not None:
-            self._detach(segment.detach, rows)
+            self._detach(segment.detach, rows, arm)
+
         touched = {segment.attach.body if segment.attach else None, segment.detach}
         touching = frozenset(name for word, name in self._bodies.items() if word in touched)
         around = ExpectedContacts(touching, usual.grasped, usual.supporting)
         self._sweeper.sweep(rows, segment.times + course.time, course.held, findings, around)
         course.row, course.time = rows[-1], course.time + float(segment.times[-1])
         self.log.time = course.time
-        if course.held is not None:
-            self._loads.check_level(course.held, rows, self._sweeper)
-            T_world_tool = self._sweeper.tool(course.row)
-            for one in course.held.all:
+        for held in course.held:
+            self._loads.check_level(held, rows, self._sweeper)
+            T_world_tool = self._sweeper.tool(course.row, held.arm)
+            for one in held.all:
                 self._world.place(one.body, T_world_tool @ one.T_tool_body)
         if segment.attach is not None:
-            self._attach(segment.attach)
+            self._attach(segment.attach, arm)
 
-    def _rows(self, segment: Segment) -> Array:
-        """Return the robot's states, shape (n, 4 + joints), checked to go on from the last one."""
-        course, held = self.course, self.course.in_hand
+    def _arm(self, segment: Segment) -> int:
+        """Return the number of a segment's arm."""
+        return 0 if segment.arm is None else self._arms[segment.arm]
+
+    def _rows(self, segment: Segment, arm: int) -> Array:
+        """Return the robot's states, shape (n, width), checked to go on from the last one."""
+        course, hand = self.course, self.course.hands.get(arm)
+        held = None if hand is None else hand.body
+        where = self._columns[arm]
+        joints, fingers = slice(where.start, where.stop - 1), where.stop - 1
         rows = np.repeat(course.row[None], len(segment.times), axis=0)
-        rows[:, -1] = segment.opening
+        rows[:, fingers] = segment.opening
 
         jump = 0.0
         if segment.part == "base":
             rows[:, :3] = segment.positions
             jump = base_difference(rows[0, :3], course.row[:3])
         elif segment.part == "arm":
-            rows[:, 3:-1] = segment.positions
-            jump = float(np.abs(rows[0, 3:-1] - course.row[3:-1]).max())
+            rows[:, joints] = segment.positions
+            jump = float(np.abs(rows[0, joints] - course.row[joints]).max())
         if jump > SEGMENT_JUMP:
             message = f"the {segment.part} jumps by {jump:.3g} (m, rad)"
             self.log.add("continuity", message, depth=jump)
-        jump = abs(float(rows[0, -1] - course.row[-1]))
+        jump = abs(float(rows[0, fingers] - course.row[fingers]))
         if jump > SEGMENT_JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
 
@@ -219,69 +229,72 @@ class Replay:
             message = f"the plan says that the hand holds {told}, not {held or 'nothing'}"
             self.log.add("continuity", message)
         keeps = segment.part == "gripper" and segment.detach is None
-        if keeps and held and np.ptp(rows[:, -1]) > SEGMENT_JUMP:
+        if keeps and held and np.ptp(rows[:, fingers]) > SEGMENT_JUMP:
             self.log.add("grasp", f"the fingers move while they hold {held}", held)
         return rows
 
-    def _attach(self, hold: Hold) -> None:
+    def _attach(self, hold: Hold, arm: int) -> None:
         course, body = self.course, self._bodies.get(hold.body)
         if body is None or not self._world.scene.bodies[body].movable:
             self.log.add("grasp", f"{hold.body} cannot be moved", hold.body)
             return
-        if course.held is not None:
-            self.log.add("grasp", f"the hand holds {course.held.body} already", hold.body)
+        if arm in course.hands:
+            self.log.add("grasp", f"the hand holds {course.hands[arm].body} already", hold.body)
 
-        T_world_body, T_world_tool = self._world.pose(body), self._sweeper.tool(course.row)
+        T_world_body, T_world_tool = self._world.pose(body), self._sweeper.tool(course.row, arm)
         T_tool_body = np.linalg.inv(T_world_tool) @ T_world_body
         moved, turned = pose_difference(T_tool_body, hold.T_tool_body)
         if moved > POSE_DIFFERENCE_M or turned > POSE_DIFFERENCE_RAD:
             off = f"{1000 * moved:.1f} mm, {math.degrees(turned):.1f} deg"
             self.log.add("grasp", f"{body} is {off} from where the hand closes", body, depth=moved)
 
-        why = self._certified.why_not_held(body, T_tool_body, float(course.row[-1]))
+        fingers = self._columns[arm].stop - 1
+        why = self._certified.why_not_held(body, T_tool_body, float(course.row[fingers]), arm)
         self._world.place(body, T_world_body)
         if why:
             self.log.add("grasp", f"the hand does not hold {body}: {why}", body)
-        load = self._loads.on(hold, body, T_world_tool, self._state)
-        course.held = Held(body, T_tool_body, load)
-        self._supports.check(body, {one.body for one in load})
+        load = self._loads.on(hold, body, T_world_tool, self._state, arm)
+        course.hands[arm] = Held(body, T_tool_body, load, arm)
+        self._supports.check(course.in_hand, {one.body for one in carried(course.held)})
 
-    def _detach(self, name: str, rows: Array) -> None:
-        course = self.course
-        if course.held is None or course.held.body.lower() != name:
+    def _detach(self, name: str, rows: Array, arm: int) -> None:
+        course, held = self.course, self.course.hands.get(arm)
+        if held is None or held.body.lower() != name:
             self.log.add("grasp", f"the hand does not hold {name}", name)
             return
-        if rows[-1, -1] < min(rows[0, -1] + POSE_DIFFERENCE_M, self._robot.opening) - SEGMENT_JUMP:
+        fingers, widest = self._columns[arm].stop - 1, self._robot.arms[arm].opening
+        if rows[-1, fingers] < min(rows[0, fingers] + POSE_DIFFERENCE_M, widest) - SEGMENT_JUMP:
             self.log.add("grasp", f"the fingers do not open to let go of {name}", name)
-        course.held = None
-        self._supports.check(None)
+        del course.hands[arm]
+        self._supports.check(course.in_hand, {one.body for one in carried(course.held)})
 
     def _expected_contacts(self, action: TimedAction) -> ExpectedContacts:
         """Find what an action is near by nature: bodies it grasps, what they stand on then."""
         grasped: set[str] = set()
         supporting_bodies: set[str] = set()
-        row, held = self.course.row.copy(), self.course.held
+        row, hands = self.course.row.copy(), dict(self.course.hands)
 
         for segment in action.segments:
-            _follow(row, segment)
+            arm = self._arm(segment)
+            _follow(row, segment, self._columns[arm])
             if segment.attach is not None and segment.attach.body in self._bodies:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
-                supporting_bodies |= self._supports.stand(body, None).on
+                supporting_bodies |= self._supports.stand(body, frozenset()).on
                 for pair in self._sweeper.together:
                     supporting_bodies |= set(pair) if body in pair else set()
-                held = Held(body, segment.attach.T_tool_body)
-            if segment.detach is not None and held is not None:
+                hands[arm] = Held(body, segment.attach.T_tool_body, arm=arm)
+            if segment.detach is not None and (held := hands.pop(arm, None)) is not None:
                 before = self._world.pose(held.body)
-                self._world.place(held.body, self._sweeper.tool(row) @ held.T_tool_body)
+                self._world.place(held.body, self._sweeper.tool(row, arm) @ held.T_tool_body)
                 grasped.add(held.body)
-                supporting_bodies |= self._supports.stand(held.body, None).on
+                supporting_bodies |= self._supports.stand(held.body, frozenset()).on
                 self._world.place(held.body, before)
         return ExpectedContacts(frozenset(), frozenset(grasped), frozenset(supporting_bodies))
 
 
-def _follow(row: Array, segment: Segment) -> None:
-    arm = range(3, len(row) - 1)
+def _follow(row: Array, segment: Segment, where: slice) -> None:
+    arm = range(where.start, where.stop - 1)
     columns: dict[str, Sequence[int]] = {"base": range(3), "arm": arm, "gripper": ()}
     for column, value in zip(columns[segment.part], segment.positions[-1], strict=True):
         row[column] = value

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from tamp.geometric.robot.states import rest_row
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Cavity, Surface
 from tamp.simulation.shapes import body_points, mass_centre
@@ -60,7 +61,7 @@ class SupportContact:
 
 
 class Supports:
-    """Asks a world of bodies how each stands. Bodies `absent` (one in the hand) carry nobody."""
+    """Asks a world of bodies how each stands. Bodies `absent` (in hands) carry nobody."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -74,16 +75,16 @@ class Supports:
         self._stands: dict[tuple[tuple[str, bytes], ...], SupportContact] = {}
         self._undersides: dict[tuple[str, bytes], Array] = {}
 
-    def stand(self, body: str, absent: str | None = None) -> SupportContact:
+    def stand(self, body: str, absent: frozenset[str] = frozenset()) -> SupportContact:
         """Find how a body stands where it is; the robot does not count."""
         key = self._surroundings(body, absent)
         if key not in self._stands:
             self._stands[key] = self._observe(body, absent)
         return self._stands[key]
 
-    def _surroundings(self, body: str, absent: str | None) -> tuple[tuple[str, bytes], ...]:
+    def _surroundings(self, body: str, absent: frozenset[str]) -> tuple[tuple[str, bytes], ...]:
         """Make a key of what a body's stand depends on: its pose and those of bodies around."""
-        names = [name for name in self._points if name != absent or name == body]
+        names = [name for name in self._points if name not in absent or name == body]
         poses = {name: self._world.pose(name) for name in names}
         centres = np.array([poses[name][:3, 3] for name in names])
         sizes = (
@@ -93,14 +94,14 @@ class Supports:
         near = [name for name, is_near in zip(names, within.tolist(), strict=True) if is_near]
         return tuple((name, poses[name].tobytes()) for name in (body, *near))
 
-    def _observe(self, body: str, absent: str | None) -> SupportContact:
+    def _observe(self, body: str, absent: frozenset[str]) -> SupportContact:
         T_world_body = self._world.pose(body)
         robot = self._world.robot
         if robot is not None:
-            self._world.set_robot((EMPTY_PLACE_X_M, EMPTY_PLACE_X_M, 0.0), robot.home, 0.0)
-        T_world_absent = self._world.pose(absent) if absent else None
-        if absent:
-            self._world.place(absent, _shifted(np.eye(4), 2 * EMPTY_PLACE_X_M))
+            self._world.set_state(rest_row(robot, (EMPTY_PLACE_X_M, EMPTY_PLACE_X_M, 0.0)))
+        elsewhere = {name: self._world.pose(name) for name in sorted(absent)}
+        for name in elsewhere:
+            self._world.place(name, _shifted(np.eye(4), 2 * EMPTY_PLACE_X_M))
 
         underside = self._underside(body, T_world_body[:3, :3]) + T_world_body[:3, 3]
         try:
@@ -111,8 +112,8 @@ class Supports:
             hits = self._world.rays(underside + up, underside - down)
         finally:
             self._world.place(body, T_world_body)
-            if absent and T_world_absent is not None:
-                self._world.place(absent, T_world_absent)
+            for name, T_world_absent in elsewhere.items():
+                self._world.place(name, T_world_absent)
 
         length = 2 * SUPPORT_PENETRATION_M + 2 * SUPPORT_GAP_SPREAD_M + SUPPORT_GAP_M
         gaps = np.array(

@@ -63,13 +63,13 @@ class SupportRelations:
             f"{name} stands on nothing at the start, as the problem says" for name in self._floating
         ]
 
-    def stand(self, body: str, in_hand: str | None) -> SupportContact:
-        """Find how a body stands while another one is in the hand."""
-        return self._supports.stand(body, absent=in_hand if in_hand != body else None)
+    def stand(self, body: str, in_hand: frozenset[str]) -> SupportContact:
+        """Find how a body stands while others are in hands."""
+        return self._supports.stand(body, absent=in_hand - {body})
 
-    def check(self, in_hand: str | None, aboard: Collection[str] = ()) -> None:
+    def check(self, in_hand: frozenset[str], aboard: Collection[str] = ()) -> None:
         """Check that every body that is neither held nor `aboard` of what is stands still."""
-        others = [name for name in self._world.scene.movable if name != in_hand]
+        others = [name for name in self._world.scene.movable if name not in in_hand]
         stands = {name: self.stand(name, in_hand) for name in others}
         for name in others:
             if name in aboard or self._floating.get(name) == self._world.pose(name).tobytes():
@@ -78,7 +78,7 @@ class SupportRelations:
             if why:
                 self._log.add("support", f"{name} does not stand: {why}", name)
 
-    def check_relations(self, state: State, in_hand: str | None) -> None:
+    def check_relations(self, state: State, in_hand: frozenset[str]) -> None:
         """Check certified relations of bodies with places, in the first state with it there."""
         there = (
             set(state.all("at-pose"))
@@ -90,7 +90,7 @@ class SupportRelations:
                 self._checked.add(fact)
                 self._check_relation(fact, in_hand)
 
-    def check_unused(self, in_hand: str | None) -> None:
+    def check_unused(self, in_hand: frozenset[str]) -> None:
         """Check the same about poses at which the body never was: as if it were there now."""
         for fact in self._relations:
             posed = [
@@ -108,11 +108,11 @@ class SupportRelations:
             before = {name: self._world.pose(name) for name in there}
             for name, pose in there.items():
                 self._world.place(name, pose)
-            self._check_relation(fact, in_hand if in_hand not in there else None)
+            self._check_relation(fact, in_hand - there.keys())
             for name, pose in before.items():
                 self._world.place(name, pose)
 
-    def check_goal(self, goal: Formula, state: State, in_hand: str | None) -> None:
+    def check_goal(self, goal: Formula, state: State, in_hand: frozenset[str]) -> None:
         """Check the goal by the facts, and again by what the bodies say is on and inside what."""
         if not self._semantics.holds(goal, state):
             self._log.add("goal", f"{to_text(goal)} does not follow from the facts at the end")
@@ -120,7 +120,7 @@ class SupportRelations:
         observed: set[Fact] = set()
         reasons: dict[Fact, str] = {}
         for name in self._world.scene.movable:
-            if name == in_hand:
+            if name in in_hand:
                 continue
             stand = self.stand(name, in_hand)
             below = stand.on - self._world.scene.surfaces.keys()
@@ -143,9 +143,9 @@ class SupportRelations:
             message = f"{to_text(goal)} does not hold in the geometry at the end"
             self._log.add("goal", f"{message}: {asked}" if asked else message)
 
-    def _check_relation(self, fact: Fact, in_hand: str | None) -> None:
+    def _check_relation(self, fact: Fact, in_hand: frozenset[str]) -> None:
         name = self._bodies.get(fact[1])
-        if name is None or name == in_hand:
+        if name is None or name in in_hand:
             return
         stand = self.stand(name, in_hand)
         why = self._why_no_relation(fact, name, stand)

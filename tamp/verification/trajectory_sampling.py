@@ -11,10 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import rest_row, with_arm
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
-from tamp.verification.execution_state import Held
+from tamp.verification.execution_state import Held, carried
 from tamp.verification.link_frames import LinkFrames, base_frames, matrices
 from tamp.verification.makers_limits import limits_of
 
@@ -82,39 +83,40 @@ class Sampler:
     def __init__(self, world: World, robot: Robot) -> None:
         self._world, self._robot = world, robot
         self._links: list[Solid] = list(world.links.values())
-        self._hand = list(world.links).index(robot.hand)
-        self._T_hand_tool = robot.T_hand_tool.matrix
+        self._hands = [list(world.links).index(arm.hand) for arm in robot.arms]
+        self._T_hand_tools = [arm.T_hand_tool.matrix for arm in robot.arms]
+        self._rest = rest_row(robot)
         self._frames_of = LinkFrames(world, robot)
-        self._hand_radii: dict[float, float] = {}
+        self._hand_radii: dict[tuple[int, float], float] = {}
         self._lately: dict[bytes, list[Motion]] = {}
 
-    def tool(self, row: Array) -> Array:
-        """Compute T_world_tool in a state, by pybullet's forward kinematics, shape (4, 4)."""
-        self._world.set_robot(row[:3], row[3:-1], row[-1])
-        hand = self._world.link_frames()[self._hand]
-        return matrices(hand[None])[0] @ self._T_hand_tool
+    def tool(self, row: Array, arm: int = 0) -> Array:
+        """Compute T_world_tool (4, 4) of an arm in a state, by the engine's forward kinematics."""
+        self._world.set_state(row)
+        hand = self._world.link_frames()[self._hands[arm]]
+        return matrices(hand[None])[0] @ self._T_hand_tools[arm]
 
-    def hand_radius(self, opening: float) -> float:
-        """Bound the distance of the tool frame's origin from any point of hand and fingers, m."""
-        if opening not in self._hand_radii:
-            row = np.array([[0.0, 0.0, 0.0, *self._robot.home, opening]])
-            frames = self._frames(row, None)
+    def hand_radius(self, opening: float, arm: int = 0) -> float:
+        """Bound the distance of an arm's tool frame from any point of hand and fingers, metres."""
+        if (arm, opening) not in self._hand_radii:
+            row = with_arm(self._robot, self._rest, arm, None, opening)
+            frames = self._frames(row[None], ())
             points = frames[:, 0] @ _corners(self._links)
-            tool = (frames[self._hand, 0] @ self._T_hand_tool)[:3, 3]
-            own = [link.owner in self._robot.grippers for link in self._links]
+            tool = (frames[self._hands[arm], 0] @ self._T_hand_tools[arm])[:3, 3]
+            own = [link.owner in self._robot.arms[arm].grippers for link in self._links]
             reaches = np.linalg.norm(points[own, :3] - tool[:, None], axis=1)
-            self._hand_radii[opening] = float(reaches.max())
-        return self._hand_radii[opening]
+            self._hand_radii[arm, opening] = float(reaches.max())
+        return self._hand_radii[arm, opening]
 
-    def movers(self, held: Held | None) -> list[Solid]:
-        """List what moves: the links, and the pieces of what is in the hand."""
-        bodies = [one.body for one in held.all] if held else []
+    def movers(self, held: Sequence[Held]) -> list[Solid]:
+        """List what moves: the links, and the pieces of what is in the hands."""
+        bodies = [one.body for one in carried(held)]
         return self._links + [piece for body in bodies for piece in self._world.solids[body]]
 
-    def motions(self, rows: Array, times: Array, held: Held | None) -> Iterator[Motion]:
+    def motions(self, rows: Array, times: Array, held: Sequence[Held]) -> Iterator[Motion]:
         """Yield a motion, sampled, in pieces that fit memory; the last few are remembered."""
-        parts = [rows, times, *((one.T_tool_body for one in held.all) if held else ())]
-        names = " ".join(one.body for one in held.all) if held else ""
+        parts = [rows, times, *(one.T_tool_body for one in carried(held))]
+        names = " ".join(f"{one.body} {one.arm}" for one in carried(held))
         key = b" ".join([names.encode(), *(np.ascontiguousarray(part).tobytes() for part in parts)])
         if key in self._lately:
             yield from self._lately[key]
@@ -138,20 +140,12 @@ class Sampler:
 
         The yaw has no limits: it stays as it is.
         """
-        room, robot = self._world.scene.room, limits_of(self._robot)
-        low = np.array(
-            [room.x[0] - 1, room.y[0] - 1, -np.inf, *(limit - 1 for limit in robot.lower), 0.0]
-        )
-        high = np.array(
-            [
-                room.x[1] + 1,
-                room.y[1] + 1,
-                np.inf,
-                *(limit + 1 for limit in robot.upper),
-                robot.opening,
-            ]
-        )
-        return np.clip(rows, low, high)
+        room = self._world.scene.room
+        low, high = [room.x[0] - 1, room.y[0] - 1, -np.inf], [room.x[1] + 1, room.y[1] + 1, np.inf]
+        for arm in map(limits_of, self._robot.arms):
+            low += [*(limit - 1 for limit in arm.lower), 0.0]
+            high += [*(limit + 1 for limit in arm.upper), arm.opening]
+        return np.clip(rows, np.array(low), np.array(high))
 
     def pieces(self, rows: Array, times: Array) -> Iterator[tuple[Array, Array]]:
         """Yield a motion's rows and times in pieces that fit memory, however far its rows are."""
@@ -179,7 +173,7 @@ class Sampler:
         if first < len(rows) - 1:
             yield rows[first:], times[first:]
 
-    def sampled(self, rows: Array, times: Array, held: Held | None) -> Motion:
+    def sampled(self, rows: Array, times: Array, held: Sequence[Held]) -> Motion:
         """Interpolate rows and times, in steps of POINT_STEP_M and JOINT_STEP_RAD at most."""
         if len(rows) > 1:
             turned = np.abs(np.diff(rows[:, 2:-1], axis=0)).sum(axis=1)
@@ -204,7 +198,7 @@ class Sampler:
         np.cumsum(chords, axis=1, out=ways[:, 1:])
         return Motion(rows, times, shaped, frames, *_boxes(solids, frames), ways)
 
-    def _frames(self, rows: Array, held: Held | None) -> Array:
+    def _frames(self, rows: Array, held: Sequence[Held]) -> Array:
         """Compute the movers' frames, shape (movers, n, 4, 4); rigid while only the base moves."""
         first = np.ones(len(rows), dtype=bool)
         first[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
@@ -212,13 +206,15 @@ class Sampler:
         if not first.all():
             T_base_links = np.linalg.inv(frames[:1]) @ frames
             frames = base_frames(rows[:, :3]) @ T_base_links[:, np.cumsum(first) - 1]
-        if held is None:
+        if not held:
             return frames
-        T_world_tool = frames[self._hand] @ self._T_hand_tool
-        carried = [
-            T_world_tool @ one.T_tool_body for one in held.all for _ in self._world.solids[one.body]
+        tools = [frames[hand] @ T for hand, T in zip(self._hands, self._T_hand_tools, strict=True)]
+        moved = [
+            tools[one.arm] @ one.T_tool_body
+            for one in carried(held)
+            for _ in self._world.solids[one.body]
         ]
-        return np.concatenate([frames, np.stack(carried)])
+        return np.concatenate([frames, np.stack(moved)])
 
 
 def _corners(solids: Sequence[Solid]) -> Array:

@@ -14,7 +14,6 @@ from typing import Any
 from tamp.errors import InputError
 from tamp.geometric.loading.robots import load_robot
 from tamp.geometric.scene.classifier import Classifier
-from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile, read_plan
 from tamp.plan.robot_check import check_robot
 from tamp.plan.sources import check_files
@@ -22,7 +21,6 @@ from tamp.plan.symbolic import is_symbolic
 from tamp.plan.violation import Violation
 from tamp.simulation.engines import asked_engines, open_world
 from tamp.symbolic.pddl.parser import parse_goal
-from tamp.symbolic.pddl.structs import Domain, Formula
 from tamp.verification.certified_facts import Certified
 from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.formulas import substitute
@@ -98,7 +96,7 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
     sources = {"problem": inputs.files.problem, "domain": inputs.files.domain}
     violations = [
         *check_files(plan, sources, loaded.meshes),
-        *_check_header(plan, loaded.scene, domain, inputs.objects, inputs.goal),
+        *_check_header(inputs, [arm.arm for arm in robot.arms]),
     ]
 
     trusted: Counter[str] = Counter()
@@ -106,7 +104,8 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
         sweeper = Sweeper(world, robot)
         certified = Certified(plan, world, robot, sweeper, domain)
         stated = certified.checkable | inputs.decided | certifiable(plan, domain, inputs.streams)
-        violations += check_initial(plan, loaded.scene, domain, inputs.initial, stated)
+        arms = [arm.arm for arm in robot.arms]
+        violations += check_initial(plan, loaded.scene, domain, inputs.initial, stated, arms)
         static = [fact for fact in plan.initial if fact[0] in stated and fact not in inputs.initial]
         violations += certified.check([*plan.certified, *static], trusted)
 
@@ -172,19 +171,14 @@ def _robot_note(plan: PlanFile) -> tuple[str, ...]:
     return (f"with the robot {plan.robot}, given beside the problem",) if plan.robot_given else ()
 
 
-def _check_header(
-    plan: PlanFile,
-    scene: Scene,
-    domain: Domain,
-    objects: dict[str, tuple[str, ...]],
-    goal: Formula,
-) -> Iterator[Violation]:
+def _check_header(inputs: Inputs, arms: Sequence[str]) -> Iterator[Violation]:
     """Check that the plan's objects, robot and goal are the problem's."""
-    yield from check_objects(plan, scene, domain)
+    plan, scene, domain = inputs.files.plan, inputs.loaded.scene, inputs.domain
+    yield from check_objects(plan, scene, domain, arms)
     if plan.robot != scene.robot.model:
         message = f"the problem's robot is {scene.robot.model}, not {plan.robot}"
         yield Violation("initial", message)
 
-    own_goal = parse_goal(plan.goal, domain, objects, plan.file)
-    if substitute(own_goal, {}) != substitute(goal, {}):
+    own_goal = parse_goal(plan.goal, domain, inputs.objects, plan.file)
+    if substitute(own_goal, {}) != substitute(inputs.goal, {}):
         yield Violation("goal", "the plan's goal is not the problem's")

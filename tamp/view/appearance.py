@@ -75,7 +75,12 @@ def robot_meshes(robot: Robot) -> dict[str, tuple[Mesh, ...]]:
     """Return the meshes of each link in its own frame: the base's parts, and what the arm's URDF
     shows.
     """
-    visuals = read_visuals(robot.urdf)
+    visuals = {
+        arm.prefix + name: shown
+        for arm in robot.arms
+        for name, shown in read_visuals(arm.urdf).items()
+    }
+
     looks: dict[str, tuple[Mesh, ...]] = {}
     for link in robot.links:
         meshes: list[Mesh] = []

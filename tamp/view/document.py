@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -54,26 +54,39 @@ def _robot(timeline: Timeline) -> dict[str, Any]:
             {"name": link.name, "meshes": packed_meshes(looks[link.name])}
             for link in _ordered(robot)
         ],
-        "T_base_arm": _matrix(robot.T_base_arm.matrix),
-        "joints": [_matrix(joint.origin.matrix) for joint in robot.joints],
-        "slides": list(robot.prismatic),
-        "T_flange_hand": _matrix(robot.T_flange_hand.matrix),
-        "T_hand_tool": _matrix(robot.T_hand_tool.matrix),
+        "arms": [_arm(arm) for arm in robot.arms],
+    }
+
+
+def _arm(arm: Robot) -> dict[str, Any]:
+    """Describe an arm: its links' names, and the frames from one to the next."""
+    return {
+        "foot": arm.foot,
+        "hand": arm.hand,
+        "T_base_arm": _matrix(arm.T_base_arm.matrix),
+        "joints": [
+            {"link": joint.child, "origin": _matrix(joint.origin.matrix), "slides": slides}
+            for joint, slides in zip(arm.joints, arm.prismatic, strict=True)
+        ],
+        "T_flange_hand": _matrix(arm.T_flange_hand.matrix),
+        "T_hand_tool": _matrix(arm.T_hand_tool.matrix),
         "fingers": [
             {
                 "link": finger.child,
                 "origin": _matrix(finger.origin.matrix),
                 "axis": list(finger.axis),
             }
-            for finger in robot.fingers
+            for finger in arm.fingers
         ],
     }
 
 
-def _ordered(robot: Robot) -> tuple[Link, ...]:
-    """Return the links in the page's order: base, foot, the arm's, hand, fingers."""
-    names = (robot.base, robot.foot, *(joint.child for joint in robot.joints), robot.hand)
-    return (*map(robot.link, names), *robot.finger_links)
+def _ordered(robot: Robot) -> Iterator[Link]:
+    """Yield the links in the page's order: base, then each arm's foot, links, hand and fingers."""
+    yield robot.link(robot.base)
+    for arm in robot.arms:
+        names = (arm.foot, *(joint.child for joint in arm.joints), arm.hand)
+        yield from (*map(arm.link, names), *arm.finger_links)
 
 
 def _bodies(timeline: Timeline) -> list[dict[str, Any]]:
@@ -85,11 +98,11 @@ def _bodies(timeline: Timeline) -> list[dict[str, Any]]:
             "height": float(bounds(body.parts, Pose())[1][2]),
             "meshes": packed_meshes(body_meshes(body)),
             "stays": [
-                {"since": stay.since, "held": stay.held, "T": _matrix(stay.T)}
+                {"since": stay.since, "held": stay.held, "T": _matrix(stay.T), "arm": stay.arm}
                 for stay in timeline.stays[name]
             ]
             if name in timeline.stays
-            else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix)}],
+            else [{"since": 0.0, "held": False, "T": _matrix(body.pose.matrix), "arm": 0}],
         }
         for name, body in timeline.scene.bodies.items()
     ]

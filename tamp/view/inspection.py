@@ -9,6 +9,7 @@ import numpy as np
 from tamp.geometric.robot.reachability import reached_share
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.spheres import link_covers
+from tamp.geometric.robot.states import columns
 
 DIGITS = 5
 """Of the metres that are told: a hundredth of a millimetre."""
@@ -18,34 +19,35 @@ def inspection(robot: Robot) -> dict[str, Any]:
     """Describe the joints' ranges, the spheres around the links and where the tool gets.
 
     Raises:
-        InputError: The robot's reachability table is missing or damaged.
+        InputError: The reachability table of a robot of one arm is missing or damaged.
     """
     return {
         "joints": _joints(robot),
         "spheres": _spheres(robot),
-        "reach": _reach(robot),
+        "reach": [] if robot.beside else _reach(robot),
         "foot": list(robot.T_base_arm.position[:2]),
     }
 
 
 def _joints(robot: Robot) -> list[dict[str, Any]]:
-    """Describe the joints in a row's order, from the base's coordinates on; the last is the
-    opening.
+    """Describe the joints in a row's order, from the base's coordinates on; of each arm the last is
+    the opening.
     """
-    found = [
-        {
-            "name": joint.name, "column": 3 + index, "low": low, "high": high,
-            "unit": "m" if joint.kind == "prismatic" else "rad",
-        }
-        for index, (joint, low, high) in enumerate(
-            zip(robot.joints, robot.lower, robot.upper, strict=True)
-        )
-    ]  # fmt: skip
-    if robot.fingers:
-        column = 3 + len(robot.joints)
-        found.append(
-            {"name": "fingers", "column": column, "low": 0.0, "high": robot.opening, "unit": "m"}
-        )
+    found: list[dict[str, Any]] = []
+    for arm, where in zip(robot.arms, columns(robot), strict=True):
+        limits = zip(arm.joints, arm.lower, arm.upper, strict=True)
+        found += [
+            {
+                "name": joint.name, "column": column, "low": low, "high": high,
+                "unit": "m" if joint.kind == "prismatic" else "rad",
+            }
+            for column, (joint, low, high) in enumerate(limits, start=where.start)
+        ]  # fmt: skip
+        if arm.fingers:
+            name, column = f"{arm.arm}'s fingers" if robot.beside else "fingers", where.stop - 1
+            found.append(
+                {"name": name, "column": column, "low": 0.0, "high": arm.opening, "unit": "m"}
+            )
     return found
 
 

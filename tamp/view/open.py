@@ -13,7 +13,8 @@ from tamp.geometric.loading.robots import ROBOTS, find_robot, load_robot
 from tamp.plan.named_files import named_files
 from tamp.plan.open import open_plan
 from tamp.plan.read import read_plan
-from tamp.plan.write import plan_document, record_document, summary_document
+from tamp.plan.summary import summary_document
+from tamp.plan.write import plan_document, record_document
 from tamp.planner.solution import Solution
 from tamp.view.robot_timeline import described, robot_timeline
 from tamp.view.story import PlanningSummary, planning_summary

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.errors import InputError
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.system.outputs import write_whole
@@ -67,7 +67,7 @@ class Renderer:
     ) -> None:
         self.timeline, self.size = timeline, size
         self.camera = camera or framing(timeline, size)
-        self._kinematics = Kinematics(timeline.robot)
+        self._kinematics = ArmsKinematics(timeline.robot)
         looks = robot_meshes(timeline.robot)
         self._robot = {
             name: [triangles(mesh) for mesh in meshes if len(mesh.faces)]
@@ -86,7 +86,7 @@ class Renderer:
     def frame(self, time: float) -> NDArray[np.uint8]:
         """Render the picture at a time, with the paths up to then; rows x columns x RGB."""
         row = self.timeline.row(time)
-        links = self._kinematics.link_poses(row[:-1], float(row[-1]))
+        links = self._kinematics.link_poses(row)
         parts = [*self._floor, *(trail.until(time) for trail in self._trails)]
         parts += [part.moved(links[name]) for name, some in self._robot.items() for part in some]
         for name, pose in self.timeline.poses(time, self._kinematics).items():
@@ -102,7 +102,7 @@ def framing(timeline: Timeline, size: tuple[int, int], angle: float = 30.0) -> C
         for x, y in timeline.rows[::20, :2]
     ]
     boxes += [(np.array([*timeline.rows[0, :2], 0.4]), np.array([*timeline.rows[0, :2], 1.1]))]
-    if timeline.inspected:
+    if timeline.inspected or timeline.robot.beside:
         boxes += _links(timeline)
     corners = np.array(
         [
@@ -130,7 +130,7 @@ def framing(timeline: Timeline, size: tuple[int, int], angle: float = 30.0) -> C
 def _links(timeline: Timeline) -> list[tuple[Array, Array]]:
     """Return the boxes around the robot's links where it starts."""
     robot, row = timeline.robot, timeline.rows[0]
-    poses = Kinematics(robot).link_poses(row[:-1], float(row[-1]))
+    poses = ArmsKinematics(robot).link_poses(row)
     return [
         bounds(link.parts, Pose.from_matrix(poses[link.name])) for link in robot.links if link.parts
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import columns, rest_row
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.view.timeline import ShownAction, Timeline
@@ -17,12 +18,12 @@ SECONDS = 4.0
 
 
 def robot_timeline(robot: Robot, model: str) -> Timeline:
-    """Make the timeline: at home, each joint of the arm down to its lower limit, up to its upper
-    one and back; then the fingers close and open, if there are any.
+    """Make the timeline: at home, each joint of an arm down to its lower limit, up to its upper one
+    and back; then its fingers close and open, if there are any.
     """
     start = RobotStart(model, (0.0, 0.0, 0.0), None)
     scene = Scene(robot.name, {}, start, Room((-SIDE, SIDE), (-SIDE, SIDE)))
-    home = np.array([0.0, 0.0, 0.0, *robot.home, robot.opening])
+    home = rest_row(robot)
     actions: list[ShownAction] = []
     times: list[float] = [0.0]
     rows: list[Array] = [home]
@@ -36,21 +37,23 @@ def robot_timeline(robot: Robot, model: str) -> Timeline:
             rows.append(row)
         actions.append(ShownAction(name, (), began, times[-1], where))
 
-    limits = zip(robot.joints, robot.lower, robot.upper, robot.home, strict=True)
-    for index, (joint, low, high, middle) in enumerate(limits):
-        unit = "m" if joint.kind == "prismatic" else "rad"
-        go(joint.name, 3 + index, (low, middle, high, middle), f"{low:.2f} to {high:.2f} {unit}")
-    if robot.fingers:
-        widest = robot.opening
-        go("fingers", len(home) - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
+    for arm, where in zip(robot.arms, columns(robot), strict=True):
+        limits = zip(arm.joints, arm.lower, arm.upper, arm.home, strict=True)
+        for column, (joint, low, high, middle) in enumerate(limits, start=where.start):
+            unit = "m" if joint.kind == "prismatic" else "rad"
+            go(joint.name, column, (low, middle, high, middle), f"{low:.2f} to {high:.2f} {unit}")
+        if arm.fingers:
+            fingers, widest = f"{arm.arm}'s fingers" if robot.beside else "fingers", arm.opening
+            go(fingers, where.stop - 1, (0.0, widest), f"0 to {1000 * widest:.0f} mm")
     return Timeline(scene, robot, tuple(actions), np.array(times), np.array(rows), {}, True)
 
 
 def described(robot: Robot) -> str:
     """Describe a robot in a line."""
     parts = sum(len(link.parts) for link in robot.links)
+    joints = " + ".join(str(len(arm.joints)) for arm in robot.arms)
     return (
-        f"{robot.name} · {len(robot.joints)} joints · {robot.drive} base · {parts} convex parts · "
+        f"{robot.name} · {joints} joints · {robot.drive} base · {parts} convex parts · "
         f"{_gripper(robot)}"
     )
 

@@ -8,8 +8,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import columns, start_row
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene
 from tamp.plan.read import PlanFile, Segment, TimedAction
@@ -38,13 +39,14 @@ class ShownAction:
 
 @dataclass(frozen=True, eq=False)
 class PoseInterval:
-    """The pose of a body from `since` on: T_world_body, or, while it is held, T_tool_body; shape
-    (4, 4).
+    """The pose of a body from `since` on: T_world_body, or, while it is held by the arm of a
+    number, T_tool_body; shape (4, 4).
     """
 
     since: float
     held: bool
     T: Array
+    arm: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +58,8 @@ class Timeline:
         robot: Of the scene.
         actions: In order; none without a plan.
         times: Seconds, shape (n,), not decreasing.
-        rows: The robot [x, y, yaw, q1..qn, opening] at these times, shape (n, 4 + joints), linear
-            in between.
+        rows: The robot [x, y, yaw, then q1..qn, opening of each arm] at these times, shape
+            (n, width), linear in between.
         stays: Where each movable body is, one after the other.
         inspected: Whether it is about the robot alone, which is shown with all that it is made of.
     """
@@ -76,24 +78,24 @@ class Timeline:
         return float(self.times[-1])
 
     def row(self, time: float) -> Array:
-        """Interpolate the robot at a time, shape (4 + joints,); before the start and after the end
-        it stands.
+        """Interpolate the robot at a time, shape (width,); before the start and after the end it
+        stands.
         """
         return np.array([np.interp(time, self.times, column) for column in self.rows.T])
 
-    def poses(self, time: float, kinematics: Kinematics) -> dict[str, Array]:
+    def poses(self, time: float, kinematics: ArmsKinematics) -> dict[str, Array]:
         """Return T_world_body (4, 4) of all bodies at a time."""
         poses = {name: np.array(body.pose.matrix) for name, body in self.scene.bodies.items()}
         for name, stays in self.stays.items():
             stay = [stay for stay in stays if stay.since <= time or stay is stays[0]][-1]
-            poses[name] = kinematics.tool(self.row(time)[:-1]) @ stay.T if stay.held else stay.T
+            held = stay.held
+            poses[name] = kinematics.tool(self.row(time), stay.arm) @ stay.T if held else stay.T
         return poses
 
 
 def timeline_of(scene: Scene, robot: Robot, plan: PlanFile | None = None) -> Timeline:
     """Follow a plan from the scene's start; without one nothing moves."""
-    arm = robot.home if scene.robot.arm is None else scene.robot.arm
-    maker = _Maker(scene, robot, np.array([*scene.robot.base, *arm, robot.opening]))
+    maker = _Maker(scene, robot, start_row(robot, scene.robot))
     places = {name.lower(): name for name in (*scene.bodies, *scene.surfaces, *scene.cavities)}
     facts = () if plan is None else (*plan.initial, *plan.certified)
     actions: list[ShownAction] = []
@@ -136,10 +138,6 @@ def _where(
     return f"in {place}" if place in scene.cavities else f"on {place}"
 
 
-PARTS = {"base": slice(0, 3), "arm": slice(3, -1), "gripper": slice(-1, None)}
-"""Columns of a row that each part of the robot has."""
-
-
 class _Maker:
     def __init__(self, scene: Scene, robot: Robot, row: Array) -> None:
         self.times: list[float] = [0.0]
@@ -149,48 +147,68 @@ class _Maker:
             for name in scene.movable
         }
         self._names = {name.lower(): name for name in scene.movable}
-        self._kinematics = Kinematics(robot)
+        self._kinematics = ArmsKinematics(robot)
+        self._columns = columns(robot)
+        self._arms = {arm.arm: number for number, arm in enumerate(robot.arms)}
         self._load: tuple[str, ...] = ()
 
     def follow(self, segment: Segment, clock: float) -> None:
         """Move one part along a segment."""
-        if segment.detach in self._names:
+        arm = 0 if segment.arm is None else self._arms[segment.arm]
+        own = self._columns[arm]
+        if segment.detach in self._names and self._holder(segment.detach) == arm:
             body = self._names[segment.detach]
-            tool = self._kinematics.tool(self.rows[-1][:-1])
+            tool = self._kinematics.tool(self.rows[-1], arm)
             for name in (body, *self._load):
                 self.stays[name].append(PoseInterval(clock, False, tool @ self.stays[name][-1].T))
             self._load = ()
 
-        columns = PARTS[segment.part]
+        fingers = own.stop - 1
+        parts = {
+            "base": slice(0, 3),
+            "arm": slice(own.start, fingers),
+            "gripper": slice(fingers, own.stop),
+        }
         positions = segment.opening[:, None] if segment.part == "gripper" else segment.positions
         for time, opening, values in zip(segment.times, segment.opening, positions, strict=True):
             row = self.rows[-1].copy()
-            row[columns] = values
-            row[-1] = opening
+            row[parts[segment.part]] = values
+            row[fingers] = opening
             self.times.append(clock + float(time))
             self.rows.append(row)
 
         if segment.attach is not None and segment.attach.body in self._names:
             hold, now = segment.attach, self.times[-1]
-            self.stays[self._names[hold.body]].append(PoseInterval(now, True, hold.T_tool_body))
+            self.stays[self._names[hold.body]].append(
+                PoseInterval(now, True, hold.T_tool_body, arm)
+            )
             load = {self._names[name]: T for name, T in hold.load if name in self._names}
             for name, T_body_rider in load.items():
-                self.stays[name].append(PoseInterval(now, True, hold.T_tool_body @ T_body_rider))
+                T_tool_rider = hold.T_tool_body @ T_body_rider
+                self.stays[name].append(PoseInterval(now, True, T_tool_rider, arm))
             self._load = tuple(load)
 
+    def _holder(self, body: str) -> int:
+        """Return the number of the arm that took a body last, by its PDDL name."""
+        return self.stays[self._names[body]][-1].arm
 
-def tool_path(timeline: Timeline, kinematics: Kinematics) -> Array:
-    """Return the tool's positions at the timeline's times, shape (n, 3), metres in the world."""
-    return np.array([kinematics.tool(row[:-1])[:3, 3] for row in timeline.rows])
+
+def tool_path(timeline: Timeline, kinematics: ArmsKinematics, arm: int = 0) -> Array:
+    """Return the positions of an arm's tool at the timeline's times, shape (n, 3), metres in the
+    world.
+    """
+    return np.array([kinematics.tool(row, arm)[:3, 3] for row in timeline.rows])
 
 
-def holding(timeline: Timeline) -> list[bool]:
-    """Check whether something is in the hand between each of the timeline's times and the next."""
+def holding(timeline: Timeline, arm: int = 0) -> list[bool]:
+    """Check whether something is in an arm's hand between each of the timeline's times and the
+    next.
+    """
     spans = [
         (stay.since, after.since if after else timeline.duration)
         for stays in timeline.stays.values()
         for stay, after in pairwise([*stays, None])
-        if stay is not None and stay.held
+        if stay is not None and stay.held and stay.arm == arm
     ]
     return [
         any(start <= a and b <= end for start, end in spans) for a, b in pairwise(timeline.times)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.geometric.scene.pose import Array
 from tamp.view.mesh import Mesh, unit
 from tamp.view.rasterizer import Triangles, triangles
@@ -43,16 +43,15 @@ class Trail:
         )
 
 
-def trails(timeline: Timeline, kinematics: Kinematics) -> list[Trail]:
-    """Make the trails of the hand, empty and with a body in it, and of the base."""
-    full = np.array([*holding(timeline), False])
-    tool = tool_path(timeline, kinematics)
+def trails(timeline: Timeline, kinematics: ArmsKinematics) -> list[Trail]:
+    """Make the trails of the hands, empty and with a body in them, and of the base."""
+    lines: list[tuple[Array, NDArray[np.bool_], tuple[float, float, float, float]]] = []
+    for arm in range(len(timeline.robot.arms)):
+        full = np.array([*holding(timeline, arm), False])
+        tool = tool_path(timeline, kinematics, arm)
+        lines += [(tool, ~full, EMPTY_COLOUR), (tool, full, FULL_COLOUR)]
     base = np.column_stack([timeline.rows[:, :2], np.full(len(timeline.rows), 0.01)])
-    lines = [
-        (tool, ~full, EMPTY_COLOUR),
-        (tool, full, FULL_COLOUR),
-        (base, np.full(len(full), True), DRIVE_COLOUR),
-    ]
+    lines.append((base, np.full(len(base), True), DRIVE_COLOUR))
     drawn = [_trail(points, timeline.times, shown, colour) for points, shown, colour in lines]
     return [trail for trail in drawn if len(trail.passed)]
 

@@ -21,7 +21,8 @@ class Noting:
     """
 
     widest = 0.08
-    hand_link = "hand"
+    grippers = frozenset({"hand", "left", "right"})
+    joints = slice(3, 10)
     finger_links = ("left", "right")
     robot_links = frozenset({"arm", "hand", "left", "right"})
 
@@ -37,6 +38,9 @@ class Noting:
 
     def step_motors(self, rates: Sequence[float] = (0.0,) * 10) -> None:
         self.ticks.append((self.conf.copy(), rates))
+
+    def use(self, arm: str | None) -> None:
+        pass
 
     def actual(self) -> Array:
         return self.conf + self.lag

@@ -111,7 +111,7 @@ def test_a_classifier_that_answers_nothing_is_refused() -> None:
 
 def test_bodies_are_moved_and_the_one_in_the_hand_is_away() -> None:
     there = Pose((0.4, 0.1, 0.551))
-    changed = moved(SCENE, {"Cup": there}, absent="box")
+    changed = moved(SCENE, {"Cup": there}, absent=("box",))
     assert changed.bodies["Cup"].pose == there and "box" not in changed.bodies
     assert changed.bodies["table"] is SCENE.bodies["table"]
     assert SCENE.bodies["Cup"].pose.position[0] == -0.2  # the scene itself stays

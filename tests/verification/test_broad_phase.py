@@ -119,8 +119,9 @@ def test_frames_are_the_engines(name: str, engine: str, rng: np.random.Generator
     scene = Scene("s", {}, RobotStart(name, (0, 0, 0)), Room((-3, 3), (-3, 3)))
     with open_world(scene, robot, name=engine) as world:
         frames = LinkFrames(world, robot)
-        low = np.array([-9.0, -9.0, -9.0, *robot.lower, 0.0])
-        high = np.array([9.0, 9.0, 9.0, *robot.upper, robot.opening])
+        low, high = [-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]
+        for arm in robot.arms:
+            low, high = [*low, *arm.lower, 0.0], [*high, *arm.upper, arm.opening]
         rows = rng.uniform(low, high, (50, len(low)))
         assert frames.measured
         assert np.abs(frames(rows) - frames.engines(rows)).max() < 1e-5
@@ -136,9 +137,9 @@ def test_frames_that_screws_do_not_give_are_asked_of_the_engine(
         ask = world.link_frames
         set_robot, last = world.set_robot, [0.0]
 
-        def bent(base: Any, arm: Any, opening: float) -> None:
+        def bent(base: Any, arm: Any, opening: float, number: int = 0) -> None:
             last[0] = opening
-            set_robot(base, arm, opening)
+            set_robot(base, arm, opening, number)
 
         def frames() -> Array:
             found = ask()

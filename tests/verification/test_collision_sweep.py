@@ -37,7 +37,7 @@ def row(x: float = 0.0, y: float = 0.0, yaw: float = 0.0, arm: Array | None = No
 
 def test_samples_are_close_together(world: World, rng: np.random.Generator) -> None:
     sampler = Sampler(world, ROBOT)
-    held = Held("stick", Pose((0.0, 0.0, 0.1)).matrix)
+    held = (Held("stick", Pose((0.0, 0.0, 0.1)).matrix),)
     tried = 0
     for _ in range(5):
         arms = rng.uniform(ROBOT.lower, ROBOT.upper, (2, 7))
@@ -65,7 +65,7 @@ def test_samples_are_close_together(world: World, rng: np.random.Generator) -> N
 def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
     sampler = Sampler(world, ROBOT)
     ends = np.array([row(), row(1.0, 0.5, 2.0)])
-    motion = sampler.sampled(ends, np.array([0.0, 1.0]), None)
+    motion = sampler.sampled(ends, np.array([0.0, 1.0]), ())
     rows = motion.rows
     world.set_robot(rows[70, :3], rows[70, 3:10], rows[70, 10])
     for name, frame in zip(world.links, motion.frames[:, 70], strict=True):
@@ -74,13 +74,13 @@ def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
 
 def test_a_thin_post_cannot_be_jumped(world: World) -> None:
     sweeper, findings = Sweeper(world, ROBOT), CollisionFindings()
-    sweeper.sweep(np.array([row(0.0), row(4.0)]), np.array([0.0, 8.0]), None, findings)
+    sweeper.sweep(np.array([row(0.0), row(4.0)]), np.array([0.0, 8.0]), (), findings)
     assert ("base", "post") in findings.worst
     worst = findings.worst["base", "post"]
     assert 3.1 < worst.time < 5.0
     assert worst.distance < -0.01
     beside = CollisionFindings()
-    sweeper.sweep(np.array([row(0.0, 0.37), row(4.0, 0.37)]), np.array([0.0, 8.0]), None, beside)
+    sweeper.sweep(np.array([row(0.0, 0.37), row(4.0, 0.37)]), np.array([0.0, 8.0]), (), beside)
     assert not beside.worst
     assert beside.nearest is not None
     assert beside.nearest.distance == pytest.approx(0.01, abs=1e-4)
@@ -88,10 +88,10 @@ def test_a_thin_post_cannot_be_jumped(world: World) -> None:
 
 def test_what_is_held_collides_too(world: World) -> None:
     sweeper = Sweeper(world, ROBOT)
-    held = Held("stick", Pose.from_xyz_rpy((0.0, 0.3, 0.0), (math.pi / 2, 0.0, 0.0)).matrix)
+    held = (Held("stick", Pose.from_xyz_rpy((0.0, 0.3, 0.0), (math.pi / 2, 0.0, 0.0)).matrix),)
     rows, times = np.array([row(0.9, -0.6), row(0.9, 0.6)]), np.array([0.0, 3.0])
     with_stick, without = CollisionFindings(), CollisionFindings()
-    sweeper.sweep(rows, times, None, without)
+    sweeper.sweep(rows, times, (), without)
     sweeper.sweep(rows, times, held, with_stick)
     reach = sweeper.tool(row())[0, 3]
     sweeper.sweep(
@@ -104,7 +104,7 @@ def test_what_is_held_collides_too(world: World) -> None:
 def test_a_folded_arm_hits_itself(world: World) -> None:
     sweeper, findings = Sweeper(world, ROBOT), CollisionFindings()
     folded = np.array([0.0, 1.7, 0.0, -3.0, 0.0, 0.0, 0.8])
-    sweeper.sweep(np.array([row(arm=folded)]), np.zeros(1), None, findings)
+    sweeper.sweep(np.array([row(arm=folded)]), np.zeros(1), (), findings)
     assert findings.worst
 
 
@@ -117,10 +117,10 @@ def test_fingers_may_touch_what_they_close_on(world: World) -> None:
     )
     world.place("stick", T_world_stick)
     sweeper.sweep(
-        narrow[None], np.zeros(1), None, findings, ExpectedContacts(touching=frozenset({"stick"}))
+        narrow[None], np.zeros(1), (), findings, ExpectedContacts(touching=frozenset({"stick"}))
     )
     assert not findings.worst
-    sweeper.sweep(narrow[None], np.zeros(1), None, findings)
+    sweeper.sweep(narrow[None], np.zeros(1), (), findings)
     assert ("panda_leftfinger", "stick") in findings.worst
     world.place("stick", STICK.pose.matrix)
 
@@ -130,7 +130,7 @@ def test_a_base_that_turns_on_and_on_is_looked_at_where_it_is(world: World, turn
     sweeper, findings = Sweeper(world, ROBOT), CollisionFindings()
     # The post is beside the base, where only a turned base reaches: at its corner's radius from the centre.
     rows = np.array([row(1.53), row(1.53, yaw=2 * math.pi * turns + 0.1)])
-    sweeper.sweep(rows, np.array([0.0, 100.0]), None, findings)
+    sweeper.sweep(rows, np.array([0.0, 100.0]), (), findings)
     assert ("base", "post") in findings.worst
     assert findings.states < 10_000
 
@@ -138,7 +138,7 @@ def test_a_base_that_turns_on_and_on_is_looked_at_where_it_is(world: World, turn
 def test_a_base_that_turns_while_it_drives_is_looked_at_along_its_way(world: World) -> None:
     sweeper, findings = Sweeper(world, ROBOT), CollisionFindings()
     rows = np.array([row(0.0, 0.5), row(2.0, 0.5, yaw=1e4)])
-    sweeper.sweep(rows, np.array([0.0, 1e4]), None, findings)
+    sweeper.sweep(rows, np.array([0.0, 1e4]), (), findings)
     assert ("base", "post") in findings.worst
     assert findings.states < 500_000
 
@@ -147,7 +147,7 @@ def test_a_sweep_ends_when_it_has_looked_enough(world: World, rng: np.random.Gen
     sweeper, findings = Sweeper(world, ROBOT), CollisionFindings(most=3_000)
     arms = rng.uniform(ROBOT.lower, ROBOT.upper, (500, 7))
     rows = np.array([row(arm=arm) for arm in arms])
-    sweeper.sweep(rows, np.arange(500.0), None, findings)
+    sweeper.sweep(rows, np.arange(500.0), (), findings)
     assert findings.full
     assert findings.states < 30_000
 
@@ -175,7 +175,7 @@ def test_only_a_pair_that_lay_in_each_other_at_the_start_may_stay_so(world: Worl
         sweeper.together |= together
         T_world_tool = sweeper.tool(row())
         T_world_stick = Pose((2.0 - 0.02 + 0.0011, 0.0, 1.0)).matrix
-        held = Held("stick", np.linalg.inv(T_world_tool) @ T_world_stick)
+        held = (Held("stick", np.linalg.inv(T_world_tool) @ T_world_stick),)
         sweeper.sweep(rows, times, held, findings, against=frozenset({"post"}))
         depths.append([round(contact.distance, 4) for contact in findings.worst.values()])
     assert depths == [[-0.0011], [], [-0.0011]]

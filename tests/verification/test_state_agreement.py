@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box
 from tamp.plan.read import Hold, PlanFile, Value
@@ -20,6 +21,7 @@ from tamp.verification.violation_log import Log
 from tests.geometric.making import body, scene, table
 from tests.plan.making import arm, base, plan_of
 
+ROBOT = ROBOTS["panda_mobile"]()
 DOMAIN = parse_domain(find_domain("cupboard").read_text(encoding="utf-8"))
 AT = Pose((0.1, 0.0, 0.55)).matrix
 SCENE = scene(table(), body("Cup", Box((0.1, 0.1, 0.1)), (0.1, 0.0, 0.55)))
@@ -36,13 +38,13 @@ CARRIED = {("holding", "cup", "g"), ("at-base", "b")}
 def agreement(plan: PlanFile | None = None, at: np.ndarray = AT) -> tuple[Agreement, Log]:
     world: Any = SimpleNamespace(scene=SCENE, pose=lambda name: at)
     log = Log()
-    return Agreement(plan or plan_of(values=VALUES), world, DOMAIN, log), log
+    return Agreement(plan or plan_of(values=VALUES), world, ROBOT, DOMAIN, log), log
 
 
 def said(facts: set[tuple[str, ...]], held: Held | None = None, **more: Any) -> list[str]:
     compared, log = agreement(**more)
     row = np.array([0.0, -2.0, 0.0, *[0.0] * 7, 0.05])
-    compared.compare(State.of(facts), ExecutionState(row, held, 0.0))
+    compared.compare(State.of(facts), ExecutionState(row, {} if held is None else {0: held}, 0.0))
     assert all(one.kind == "state" for one in log.violations)
     return [one.message for one in log.violations]
 
@@ -107,7 +109,7 @@ ROWS = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 0.0]])
 def test_an_action_does_what_its_motion_says(stretches: Any, message: str | None) -> None:
     plan = plan_of(
         ("move", ("b", "t"), [base([0, 1], ROWS.tolist())]),
-        values={**VALUES, "t": Value("motion", stretches)},
+        values={**VALUES, "t": Value("motion", tuple((*one, None) for one in stretches))},
     )
     compared, log = agreement(plan)
     compared.follows(plan.actions[0])

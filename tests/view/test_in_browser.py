@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.view.document import page_document
 from tamp.view.page import page, write_page
 from tamp.view.samples import SampleMarker
@@ -80,18 +80,16 @@ def test_the_picture_is_not_blank(opened: Browser, tmp_path: Path) -> None:
 def test_the_slider_moves_robot_and_bodies_as_the_film_does(
     opened: Browser, timeline: Timeline, tmp_path: Path
 ) -> None:
-    kinematics = Kinematics(timeline.robot)
+    kinematics = ArmsKinematics(timeline.robot)
     before = picture(opened, tmp_path)
     for time in np.linspace(0.0, timeline.duration, 7).round(2):
         opened.run(SLIDE.format(time=time))
         now = float(opened.run("tamp.state.time"))
         row = timeline.row(now)
         assert now == pytest.approx(time, abs=0.011)
-        assert matrix(opened.run("tamp.tool()")) == pytest.approx(
-            kinematics.tool(row[:10]), abs=1e-4
-        )
+        assert matrix(opened.run("tamp.tool()")) == pytest.approx(kinematics.tool(row), abs=1e-4)
         links = opened.run("tamp.links()")
-        for name, pose in kinematics.link_poses(row[:10], float(row[10])).items():
+        for name, pose in kinematics.link_poses(row).items():
             assert matrix(links[name]) == pytest.approx(pose, abs=1e-4), name
         bodies = opened.run("tamp.bodies()")
         for name, pose in timeline.poses(now, kinematics).items():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tamp import load_problem, solve
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.plan.open import PlanBundle, open_plan
 from tamp.plan.write import write_plan
 from tamp.simulation.engines import open_world
@@ -40,11 +40,11 @@ def test_the_robot_moves_without_jumps_and_stands_before_and_after(timeline: Tim
 def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(
     timeline: Timeline, stored: PlanBundle
 ) -> None:
-    kinematics = Kinematics(timeline.robot)
+    kinematics = ArmsKinematics(timeline.robot)
     kept, held, left = timeline.stays["soup_can"]
     assert (kept.held, held.held, left.held) == (False, True, False)
     for time in np.linspace(held.since, left.since - 1e-6, 7):
-        T_tool_world = np.linalg.inv(kinematics.tool(timeline.row(time)[:10]))
+        T_tool_world = np.linalg.inv(kinematics.tool(timeline.row(time)))
         assert T_tool_world @ timeline.poses(time, kinematics)["soup_can"] == pytest.approx(held.T)
     for time in (held.since, left.since):  # nothing jumps when it is grasped or let go
         before, after = (
@@ -58,12 +58,12 @@ def test_a_body_stays_in_the_hand_and_ends_where_the_plan_puts_it(
 
 
 def test_links_stand_where_another_engine_has_them(timeline: Timeline) -> None:
-    kinematics = Kinematics(timeline.robot)
+    kinematics = ArmsKinematics(timeline.robot)
     with open_world(timeline.scene, timeline.robot) as world:
         for time in np.linspace(0.0, timeline.duration, 9):
             row = timeline.row(time)
             world.set_robot(row[:3], row[3:10], float(row[10]))
-            ours = kinematics.link_poses(row[:10], float(row[10]))
+            ours = kinematics.link_poses(row)
             for name, pose in world.link_poses().items():
                 assert ours[name] == pytest.approx(pose, abs=1e-5), name
 
@@ -76,7 +76,7 @@ def test_the_hand_is_full_between_pick_and_place(timeline: Timeline) -> None:
         for action in timeline.actions
     ]
     assert middle == [False, True, True, False]
-    assert tool_path(timeline, Kinematics(timeline.robot)).shape == (len(timeline.times), 3)
+    assert tool_path(timeline, ArmsKinematics(timeline.robot)).shape == (len(timeline.times), 3)
 
 
 def test_a_scene_alone_stands_still(timeline: Timeline) -> None:

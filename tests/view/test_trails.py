@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.loading.robots import ROBOTS
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.geometric.scene.scene import Box
 from tamp.plan.read import Segment
 from tamp.view.timeline import timeline_of
@@ -35,7 +35,7 @@ def drive(start: float, end: float, holding: str | None = None) -> Segment:
 
 def made(*segments: Segment) -> dict[tuple[float, ...], Trail]:
     plan = plan_of(*(("act", ("cup",), [segment]) for segment in segments))
-    found = trails(timeline_of(SCENE, ROBOT, plan), Kinematics(ROBOT))
+    found = trails(timeline_of(SCENE, ROBOT, plan), ArmsKinematics(ROBOT))
     return {tuple(trail.line.colours[0].round(6)): trail for trail in found}
 
 
@@ -51,7 +51,7 @@ def test_a_drive_leaves_a_line_on_the_floor_and_one_of_the_empty_hand() -> None:
     around = np.hypot(floor[:, :, 1] + 2.0, floor[:, :, 2] - 0.01)
     assert around == pytest.approx(np.full(around.shape, TRAIL_RADIUS_M))  # a rod about the way
     hand = found[EMPTY].line.corners
-    tool = Kinematics(ROBOT).tool(np.array([0.0, -2.0, 0.0, *ROBOT.home]))[:3, 3]
+    tool = ArmsKinematics(ROBOT).tool(np.array([0.0, -2.0, 0.0, *ROBOT.home, ROBOT.opening]))[:3, 3]
     assert hand[:, :, 2].mean() == pytest.approx(tool[2], abs=TRAIL_RADIUS_M)
 
 
@@ -75,7 +75,7 @@ def test_with_a_body_in_it_the_hands_line_has_another_colour() -> None:
         drive(0.0, 0.5), close("cup"), drive(0.5, 1.0, "cup"), let_go("cup"), drive(1.0, 1.5)
     )
     assert found.keys() == {EMPTY, FULL, DRIVE}
-    tool = Kinematics(ROBOT).tool(np.array([0.0, -2.0, 0.0, *ROBOT.home]))[0, 3]
+    tool = ArmsKinematics(ROBOT).tool(np.array([0.0, -2.0, 0.0, *ROBOT.home, ROBOT.opening]))[0, 3]
     full = found[FULL].line.corners[:, :, 0] - tool
     assert full.min() == pytest.approx(0.5, abs=POINT_SPACING_M) and full.max() == pytest.approx(
         1.0, abs=0.03
@@ -85,4 +85,4 @@ def test_with_a_body_in_it_the_hands_line_has_another_colour() -> None:
 
 def test_who_stands_still_leaves_none() -> None:
     assert made(base([0, 5], [[0, -2, 0], [0, -2, 0]])) == {}
-    assert trails(timeline_of(SCENE, ROBOT), Kinematics(ROBOT)) == []
+    assert trails(timeline_of(SCENE, ROBOT), ArmsKinematics(ROBOT)) == []

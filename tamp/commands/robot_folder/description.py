@@ -12,11 +12,11 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element, elements, origin_pose
 from tamp.geometric.loading.xml_file import read_xml
 from tamp.geometric.robot.urdf import Joint
+from tamp.geometric.robot.urdf_words import roll_pitch_yaw
 from tamp.geometric.scene.pose import Pose
 
 MOVING = ("revolute", "continuous", "prismatic")

@@ -9,9 +9,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from tamp.commands.robot_folder.mjcf_shapes import Shapes, add_origin, pose_matrix
-from tamp.commands.robot_folder.urdf_words import words
 from tamp.errors import InputError
 from tamp.geometric.loading.xml_file import read_xml
+from tamp.geometric.robot.urdf_words import words
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.mujoco_model import load_mujoco
 

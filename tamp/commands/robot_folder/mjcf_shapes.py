@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from tamp.commands.robot_folder.convex import ball
-from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw, words
+from tamp.geometric.robot.urdf_words import roll_pitch_yaw, words
 from tamp.geometric.scene.pose import Array, Pose
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from tamp.commands.robot_folder.urdf_words import roll_pitch_yaw, words
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Robot
 from tamp.geometric.robot.urdf import Joint
+from tamp.geometric.robot.urdf_words import roll_pitch_yaw, words
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Hull, Part

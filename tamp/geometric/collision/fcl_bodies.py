@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import fcl
@@ -14,6 +15,10 @@ from tamp.geometric.scene.scene import Box, Cylinder, Part, Shape, Sphere
 
 if TYPE_CHECKING:
     from jaxtyping import Float
+
+
+REMEMBERED = 4096
+"""Shapes whose geometry is kept: hulls take a millisecond to build."""
 
 
 class FclBody:
@@ -51,8 +56,9 @@ class FclBody:
         return self.objects[index]
 
 
+@lru_cache(maxsize=REMEMBERED)
 def geometry(shape: Shape) -> fcl.CollisionGeometry:
-    """Build the FCL geometry of a shape, in the shape's own frame."""
+    """Build the FCL geometry of a shape, in the shape's own frame; one for all its objects."""
     if isinstance(shape, Box):
         return fcl.Box(*shape.size)
     if isinstance(shape, Cylinder):

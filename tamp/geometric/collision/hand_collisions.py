@@ -101,6 +101,23 @@ class HandCollisions:
 
         return None
 
+    def meets(
+        self, opening: float, T_body_tool: Float[Array, "4 4"], other: HandCollisions,
+        its_opening: float, T_body_other: Float[Array, "4 4"],
+    ) -> bool:  # fmt: skip
+        """Check whether the hand meets another one, each at its opening, metres, and its tool's
+        pose.
+        """
+        own, its = self._movers(opening), other._movers(its_opening)
+        at, there = _moved(own.centres, T_body_tool), _moved(its.centres, T_body_other)
+        near = np.linalg.norm(at[:, None] - there[None], axis=2) <= own.radii[:, None] + its.radii
+        for i, j in zip(*(axis.tolist() for axis in np.nonzero(near)), strict=True):
+            (body, number, frame), (another, its_number, its_frame) = own.parts[i], its.parts[j]
+            first = body.place(number, T_body_tool @ frame)
+            if touch(first, another.place(its_number, T_body_other @ its_frame), 0.0):
+                return True
+        return False
+
     def _parts(self, around: list[Placed]) -> tuple[list[tuple[str, Pose, int]], Array, Array]:
         owners: list[tuple[str, Pose, int]] = []
         lows: list[Array] = []
@@ -170,6 +187,10 @@ class _Movers:
                 centres.append(T_tool_body[:3, :3] @ ((low + high) / 2) + T_tool_body[:3, 3])
                 radii.append(float(np.linalg.norm(high - low)) / 2 + RADIUS_SLACK_M)
         return cls(parts, np.array(centres), np.array(radii))
+
+
+def _moved(points: Array, T: Array) -> Array:
+    return points @ T[:3, :3].T + T[:3, 3]
 
 
 def _finger(joint: Joint, opening: float) -> Array:

@@ -120,4 +120,7 @@ class RobotTables:
 
 
 def _checked(first: str, second: str, robot: Robot) -> bool:
-    return first != second and (min(first, second), max(first, second)) not in robot.allowed
+    if first == second or (min(first, second), max(first, second)) in robot.allowed:
+        return False
+    stand = (first in robot.standing, second in robot.standing)
+    return not all(stand) and not (any(stand) and {first, second} & {robot.base, robot.foot})

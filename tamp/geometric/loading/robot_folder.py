@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 import math
+import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
+import tamp.geometric.robot
 from tamp.errors import InputError
 from tamp.geometric.loading.robot_gripper import read_gripper, read_pose
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.robot.arms import Mobile, as_arm, joined
 from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
@@ -21,6 +24,10 @@ from tamp.geometric.scene.scene import Box, Hull, Part
 
 ROBOT_FILE, GEOMETRY_FILE = "robot.yaml", "geometry.npz"
 VERSION = "1"
+ASSETS = Path(tamp.geometric.robot.__file__).parent / "assets"
+"""The folder of the shipped robots' folders."""
+NAME = re.compile("[a-z][a-z0-9-]*")
+"""Of an arm, as PDDL and the names of its links have it."""
 KINDS = ("revolute", "continuous", "prismatic")
 FULL_TURN = 2 * math.pi
 """A continuous joint's range in plans is one turn to either side, radians."""
@@ -44,8 +51,12 @@ def read_robot(folder: Path) -> Robot:
     root = read_yaml(file)
     top = root.mapping()
     _check_format(root, top)
-    top = root.mapping(_TOP, required=("format", "version", "urdf", "base", "arm", "gripper"))
+    return _several(root, folder) if "arms" in top else _one(root, folder)
 
+
+def _one(root: Node, folder: Path) -> Robot:
+    """Read a robot of one arm."""
+    top = root.mapping(_TOP, required=("format", "version", "urdf", "base", "arm", "gripper"))
     base = top["base"].mapping(_BASE, required=_BASE)
     arm = top["arm"].mapping(_ARM, required=("foot", "mount", "home", "joints"))
     gripper = read_gripper(top["gripper"])
@@ -96,6 +107,46 @@ def read_robot(folder: Path) -> Robot:
     )
     _check_home(robot, arm["home"])
     return robot
+
+
+def _several(root: Node, folder: Path) -> Robot:
+    """Read a robot whose arms are those of other robots' folders."""
+    top = root.mapping(("format", "version", "base", "arms"), required=("base", "arms"))
+    base = top["base"].mapping(_BASE, required=_BASE)
+    body = Mobile(
+        name=folder.name,
+        base=Link(base["link"].text(), (_box(base["box"]),)),
+        velocity=base["velocity"].numbers(3, positive=True),
+        acceleration=base["acceleration"].numbers(3, positive=True),
+        drive=base["drive"].text(("fixed",), "drive of a robot with several arms"),
+        folder=folder,
+    )
+    entries = top["arms"].mapping()
+    if len(entries) < 2:
+        raise top["arms"].error("several arms are at least two; one arm is an 'arm:'")
+
+    arms: list[Robot] = []
+    for name, node in entries.items():
+        if not NAME.fullmatch(name):
+            raise node.error(f"'{name}' is no name of an arm: a letter, then letters, digits and -")
+        entry = node.mapping(("robot", "mount"), required=("robot", "mount"))
+        own = read_robot(_beside(entry["robot"], folder))
+        if own.beside:
+            raise entry["robot"].error(f"the robot '{own.name}' has several arms itself")
+        arms.append(as_arm(body, own, name, read_pose(entry["mount"])))
+    return joined(arms)
+
+
+def _beside(node: Node, folder: Path) -> Path:
+    """Find the folder of an arm's robot: from here, or a shipped one by its name."""
+    places = (folder / node.text(), ASSETS / node.text())
+    for place in places:
+        if (place / ROBOT_FILE).is_file() and place.resolve() != folder.resolve():
+            return place.resolve()
+    raise node.error(
+        f"no robot's folder '{node.text()}'",
+        remedy="Say where it is, from this folder, or a robot that comes with tamp",
+    )
 
 
 def _check_format(root: Node, top: Mapping[str, Node]) -> None:

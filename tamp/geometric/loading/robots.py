@@ -7,15 +7,13 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-import tamp.geometric.robot
 from tamp.errors import InputError
-from tamp.geometric.loading.robot_folder import ROBOT_FILE, read_robot
+from tamp.geometric.loading.robot_folder import ASSETS, ROBOT_FILE, read_robot
 from tamp.geometric.robot.robot import Robot
 
-ASSETS = Path(tamp.geometric.robot.__file__).parent / "assets"
-"""The folder of the shipped robots' folders."""
-
-SHIPPED = ("panda_mobile", "panda_fixed", "ur5", "ur5_suction", "xarm7", "pr2")
+SHIPPED = (
+    "panda_mobile", "panda_fixed", "ur5", "ur5_suction", "xarm7", "pr2", "two_pandas",
+)  # fmt: skip
 """Their names."""
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.states import columns
 from tamp.geometric.scene.pose import Array, Pose
 
 if TYPE_CHECKING:
@@ -89,6 +90,8 @@ class Kinematics:
             T_hand_finger = origin.copy()
             T_hand_finger[:3, 3] += axis * (opening / 2)
             poses[name] = T_world_hand @ T_hand_finger
+        for name, T_base_link in robot.standing.items():
+            poses[name] = T_world_base @ T_base_link.matrix
         return poses
 
     def tool(self, conf: Float[Array, " conf"]) -> Float[Array, "4 4"]:
@@ -122,6 +125,29 @@ class Kinematics:
         of = self._of
         frame = of.library.ReferenceFrame.LOCAL_WORLD_ALIGNED
         return of.library.computeFrameJacobian(of.model, of.data, conf, of.tool, frame)
+
+
+class ArmsKinematics:
+    """FK of all arms of a robot in its states [x, y, yaw, then q1..qn, opening of each arm]."""
+
+    def __init__(self, robot: Robot) -> None:
+        self._arms = [Kinematics(replace(arm, standing={})) for arm in robot.arms]
+        self._columns = columns(robot)
+
+    def _conf(self, row: Float[Array, " width"], arm: int) -> Float[Array, " conf"]:
+        return np.concatenate([row[:3], row[self._columns[arm]][:-1]])
+
+    def link_poses(self, row: Float[Array, " width"]) -> dict[str, Float[Array, "4 4"]]:
+        """Compute T_world_link (4, 4) of all links by name."""
+        poses: dict[str, Array] = {}
+        for number, kinematics in enumerate(self._arms):
+            opening = float(row[self._columns[number].stop - 1])
+            poses |= kinematics.link_poses(self._conf(row, number), opening)
+        return poses
+
+    def tool(self, row: Float[Array, " width"], arm: int = 0) -> Float[Array, "4 4"]:
+        """Compute T_world_tool of the arm of a number, shape (4, 4)."""
+        return self._arms[arm].tool(self._conf(row, arm))
 
 
 def base_matrix(base: Float[Array, " coordinates"]) -> Float[Array, "4 4"]:

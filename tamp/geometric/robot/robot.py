@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from tamp.geometric.robot.urdf import Joint
@@ -74,6 +75,13 @@ class Robot:
             knows; None where there is none.
         effort: The most that each of the arm's joints exerts, newton metres or newtons.
         suction: The cup of a suction gripper; None where fingers grasp.
+        arm: The arm's name among those of one body.
+        prefix: What the names of the arm's links and joints begin with, beside those in its URDF.
+        beside: The other arms of one body: each a robot of the same base and links, which holds
+            this arm still. An arm alone has none.
+        standing: Links that are not the arm's and stand still: their poses in the base's frame.
+        described: Folders with the covers of links, each with what the links' names begin with
+            beside those in the folder; none: the robot's own.
     """
 
     name: str
@@ -101,6 +109,11 @@ class Robot:
     force: float = 50.0
     payload: float = math.inf
     suction: Suction | None = None
+    arm: str = "arm"
+    prefix: str = ""
+    beside: tuple[Robot, ...] = ()
+    standing: Mapping[str, Pose] = field(default_factory=dict[str, Pose])
+    described: tuple[tuple[str, Path], ...] = ()
 
     def link(self, name: str) -> Link:
         """Return the link of that name.
@@ -138,16 +151,25 @@ class Robot:
             return 0, Pose()
         if name == self.foot:
             return 0, self.T_base_arm
+        if name in self.standing:
+            return 0, self.standing[name]
         for number, joint in enumerate(self.joints, start=1):
             if joint.child == name:
                 return number, Pose()
         return len(self.joints), self.T_flange_hand
 
     @property
+    def arms(self) -> tuple[Robot, ...]:
+        """Return all arms of the body, this one first."""
+        return (replace(self, beside=()), *self.beside)
+
+    @property
     def files(self) -> tuple[Path, ...]:
         """Return the files that a plan for this robot rests on."""
         names = ("robot.yaml", "geometry.npz", "reachability.npz")
-        return tuple(self.folder / name for name in names)
+        folders = dict.fromkeys((self.folder, *(folder for _, folder in self.described)))
+        files = (folder / name for folder in folders for name in names)
+        return tuple(file for file in files if not self.described or file.is_file())
 
 
 def _no_link(name: str) -> Link:

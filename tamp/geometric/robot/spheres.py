@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,10 +22,20 @@ def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"]
     For a part without a cover the kernels use its bounding sphere and the exact test alone.
     """
     covers = {}
-    with np.load(robot.folder / "geometry.npz", allow_pickle=False) as arrays:
+    for prefix, folder in robot.described or (("", robot.folder),):
+        file = folder / "geometry.npz"
+        known = _read(file, file.stat().st_mtime_ns)
         for link in robot.links:
-            for k in range(len(link.parts)):
-                key = f"{link.name}/{k}"
-                if f"{key}/spheres" in arrays:
-                    covers[link.name, k] = (arrays[f"{key}/spheres"], float(arrays[f"{key}/slack"]))
+            for k in range(len(link.parts) if link.name.startswith(prefix) else 0):
+                key = f"{link.name.removeprefix(prefix)}/{k}"
+                if key in known:
+                    covers[link.name, k] = known[key]
     return covers
+
+
+@lru_cache(maxsize=8)
+def _read(file: Path, _: int) -> dict[str, tuple[Array, float]]:
+    """Read all covers in a file as it was at a time; robots of several arms are made often."""
+    with np.load(file, allow_pickle=False) as arrays:
+        keys = [name.removesuffix("/spheres") for name in arrays.files if name.endswith("/spheres")]
+        return {key: (arrays[f"{key}/spheres"], float(arrays[f"{key}/slack"])) for key in keys}

@@ -146,7 +146,7 @@ def _can_retreat(context: Context, grasp: Grasp, base: Array, home: Array) -> bo
 def _reaching(
     context: Context, pose: Pose, grasp: Grasp, base: Array, T_world_tool: Array, call: Call
 ) -> tuple[BaseConf, Reach] | Rejection:
-    empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
+    empty = context.fixed_only(None)
     T_base_tool = (
         np.linalg.inv(Pose.from_xyz_yaw(base[0], base[1], 0.0, base[2]).matrix) @ T_world_tool
     )
@@ -160,42 +160,59 @@ def _reaching(
         np.abs(solutions - context.home).max(axis=1) + call.rng.uniform(0.0, 0.5, len(solutions))
     )
     reason = Rejection("no straight approach", kind=RejectionKind.UNREACHABLE)
-    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
-        grasp.body, pose, LIFT_DISTANCE_M
-    )
-
     confs = [context.conf(base, q) for q in solutions[order[:MAX_ARM_SOLUTIONS]]]
     # One that keeps its distance is the better bet; close to a wall only the exact test can tell.
     clear = [conf for conf in confs if empty.free(conf)] or confs
     for conf in clear[:MAX_APPROACHES]:
-        hit = empty.hits(conf)
-        if hit is not None:
-            reason = _collision(hit)
-            continue
-
-        reach = _approach(context, T_base_tool, conf[3:], up)
-        if reach is None:
-            continue
-
-        approach, lift = (
-            np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift)
-        )
-        hit = (
-            empty.path_hits(approach)
-            or lift_hits(context, pose, grasp, lift)
-            or empty.path_hits(np.array([approach[0], lift[-1]]))
-        )
-        if hit is not None:
-            reason = _collision(hit)
-            continue
-
-        if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
-            reason = Rejection("no room before the approach", kind=RejectionKind.COLLISION)
-            continue
-
-        return BaseConf(float(base[0]), float(base[1]), float(base[2])), reach
+        found = reach_from(context, pose, grasp, base, T_base_tool, conf[3:])
+        if isinstance(found, Reach):
+            return BaseConf(float(base[0]), float(base[1]), float(base[2])), found
+        reason = found or reason
 
     return reason
+
+
+def reach_from(
+    context: Context, pose: Pose, grasp: Grasp, base: Float[Array, " 3"],
+    T_base_tool: Float[Array, "4 4"], q: Float[Array, " joints"],
+) -> Reach | Rejection | None:  # fmt: skip
+    """Return the last stretch to a grasp at one of the arm's solutions, free of the fixed bodies,
+    with the hand empty and with the body in it; None where there is no straight one.
+
+    Args:
+        context: The problem's tools.
+        pose: T_world_body.
+        grasp: How the hand holds it there.
+        base: x, y, yaw.
+        T_base_tool: Of the tool at the grasp.
+        q: The arm's configuration there.
+    """
+    empty, loaded = context.fixed_only(None), context.fixed_only(grasp)
+    hit = empty.hits(context.conf(base, q))
+    if hit is not None:
+        return _collision(hit)
+
+    up = Pose.from_xyz_yaw(0.0, 0.0, 0.0, -base[2]).rotation @ context.touching.way_out(
+        grasp.body, pose, LIFT_DISTANCE_M
+    )
+    reach = _approach(context, T_base_tool, q, up)
+    if reach is None:
+        return None
+
+    approach, lift = (
+        np.array([context.conf(base, q) for q in path]) for path in (reach.approach, reach.lift)
+    )
+    hit = (
+        empty.path_hits(approach)
+        or lift_hits(context, pose, grasp, lift)
+        or empty.path_hits(np.array([approach[0], lift[-1]]))
+    )
+    if hit is not None:
+        return _collision(hit)
+
+    if not (loaded.free(lift[-1]) and empty.free(lift[-1])):
+        return Rejection("no room before the approach", kind=RejectionKind.COLLISION)
+    return reach
 
 
 def _approach(context: Context, T_base_tool: Array, q: Array, lift: Array) -> Reach | None:

@@ -131,7 +131,34 @@ def _transits(
     """
     others = {name: other for name, other in body_poses(call).items() if name != body}
     stand = np.array(base.array)
-    out = reach.lift[-1]
+    query = _from_home(context, stand, reach.lift[-1], call)
+    with_body = {**others, body: pose}
+    for loaded in _attempts(context, others, grasp, query):
+        if isinstance(loaded, Rejection):
+            yield loaded
+            continue
+
+        among = context.collisions.arrangement(with_body)
+        if _free(among, query.confs(loaded)):
+            yield loaded, loaded
+            continue
+        for empty in _attempts(context, with_body, None, query):
+            yield empty if isinstance(empty, Rejection) else (empty, loaded)
+            break
+
+
+def arm_ways(
+    context: Context, poses: dict[str, Pose], held: Grasp | None, base: BaseConf,
+    out: Array, call: Call,
+) -> Iterator[Array | Rejection]:  # fmt: skip
+    """Yield the arm's ways (n, joints) from home to a configuration (joints,), or why there is
+    none, among bodies at poses.
+    """
+    yield from _attempts(context, poses, held, _from_home(context, np.array(base.array), out, call))
+
+
+def _from_home(context: Context, stand: Array, out: Array, call: Call) -> _Query:
+    """Ask for a way of the arm from home to a configuration (joints,)."""
 
     def plan(arrangement: Arrangement, effort: int) -> MotionResult:
         return plan_arm(
@@ -147,22 +174,9 @@ def _transits(
         )
 
     reached = context.conf(stand, context.home), context.conf(stand, out)
-    query = _Query(
+    return _Query(
         plan, lambda path: np.column_stack([np.tile(stand, (len(path), 1)), path]), reached
     )
-    with_body = {**others, body: pose}
-    for loaded in _attempts(context, others, grasp, query):
-        if isinstance(loaded, Rejection):
-            yield loaded
-            continue
-
-        among = context.collisions.arrangement(with_body)
-        if _free(among, query.confs(loaded)):
-            yield loaded, loaded
-            continue
-        for empty in _attempts(context, with_body, None, query):
-            yield empty if isinstance(empty, Rejection) else (empty, loaded)
-            break
 
 
 def _attempts(

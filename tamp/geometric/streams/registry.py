@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from tamp.geometric.streams.approach import test_approach, test_approach_clear
+from tamp.geometric.streams.by_arms import by_arm, plan_pick_by, plan_place_by
 from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
+from tamp.geometric.streams.handover import plan_handover, sample_handover
 from tamp.geometric.streams.inverse_kinematics import inverse_kinematics, inverse_kinematics_here
 from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
 from tamp.geometric.streams.movable_supports import (
@@ -46,5 +48,15 @@ STREAMS: Mapping[str, ShippedStream] = {
     "plan-base-motion": ShippedStream(plan_base_motion, StreamKind.MOTION),
     "plan-pick": ShippedStream(plan_pick, StreamKind.MOTION),
     "plan-place": ShippedStream(plan_place, StreamKind.MOTION),
+    "sample-grasp-by": ShippedStream(by_arm(sample_grasp), StreamKind.GRASPS),
+    "inverse-kinematics-by": ShippedStream(by_arm(inverse_kinematics_here), StreamKind.IK),
+    "test-reachable-by": ShippedStream(by_arm(test_reachable), StreamKind.TESTS),
+    "test-approach-by": ShippedStream(by_arm(test_approach), StreamKind.TESTS),
+    "test-approach-clear-by": ShippedStream(by_arm(test_approach_clear), StreamKind.TESTS),
+    "test-reach-clear-by": ShippedStream(by_arm(test_reach_clear), StreamKind.TESTS),
+    "plan-pick-by": ShippedStream(plan_pick_by, StreamKind.MOTION),
+    "plan-place-by": ShippedStream(plan_place_by, StreamKind.MOTION),
+    "sample-handover": ShippedStream(sample_handover, StreamKind.IK),
+    "plan-handover": ShippedStream(plan_handover, StreamKind.MOTION),
 }
 """By the stream's name."""

@@ -9,7 +9,7 @@ const make = (tag, text, kind) => {
 };
 const state = { time: 0, playing: false, last: 0, pointed: null, dirty: true, hidden: new Set() };
 const times = new Float32Array(bytes(data.times)), rows = new Float32Array(bytes(data.rows));
-const duration = times[times.length - 1], WIDTH = data.robot.joints.length + 4;
+const duration = times[times.length - 1], WIDTH = data.robot.arms.reduce((width, arm) => width + arm.joints.length + 1, 3);
 
 // ---- where everything is
 
@@ -25,25 +25,30 @@ function rowAt(time) {
 const rowNow = () => inspected.row || rowAt(state.time);
 
 function linksAt(row) {
-  const robot = data.robot, n = robot.joints.length, T = M.mul(M.move(row[0], row[1], 0), M.rotZ(row[2]));
-  const places = { [robot.links[0].name]: T };
-  let at = places[robot.links[1].name] = M.mul(T, robot.T_base_arm);
-  robot.joints.forEach((origin, i) => {
-    at = M.mul(M.mul(at, origin), robot.slides[i] ? M.move(0, 0, row[3 + i]) : M.rotZ(row[3 + i]));
-    places[robot.links[2 + i].name] = at;
-  });
-  const hand = places[robot.links[n + 2].name] = M.mul(at, robot.T_flange_hand);
-  for (const finger of robot.fingers) {
-    const [x, y, z] = finger.axis.map((part) => (part * row[3 + n]) / 2);
-    places[finger.link] = M.mul(M.mul(hand, finger.origin), M.move(x, y, z));
+  const robot = data.robot, T = M.mul(M.move(row[0], row[1], 0), M.rotZ(row[2]));
+  const places = { [robot.links[0].name]: T }, tools = [];
+  let first = 3;
+  for (const arm of robot.arms) {
+    let at = places[arm.foot] = M.mul(T, arm.T_base_arm);
+    arm.joints.forEach((joint, i) => {
+      const q = row[first + i];
+      at = places[joint.link] = M.mul(M.mul(at, joint.origin), joint.slides ? M.move(0, 0, q) : M.rotZ(q));
+    });
+    const hand = places[arm.hand] = M.mul(at, arm.T_flange_hand), opening = row[first + arm.joints.length];
+    for (const finger of arm.fingers) {
+      const [x, y, z] = finger.axis.map((part) => (part * opening) / 2);
+      places[finger.link] = M.mul(M.mul(hand, finger.origin), M.move(x, y, z));
+    }
+    tools.push(M.mul(hand, arm.T_hand_tool));
+    first += arm.joints.length + 1;
   }
-  return { places, tool: M.mul(hand, robot.T_hand_tool) };
+  return { places, tools, tool: tools[0] };
 }
 
-function placeOf(body, time, tool) {
+function placeOf(body, time, tools) {
   let stay = body.stays[0];
   for (const other of body.stays) if (other.since <= time) stay = other;
-  return stay.held ? M.mul(tool, stay.T) : stay.T;
+  return stay.held ? M.mul(tools[stay.arm], stay.T) : stay.T;
 }
 
 function actionAt(time) {
@@ -89,17 +94,20 @@ function prepare() {
 }
 
 function preparePaths() {
-  const hand = [], tints = [], base = [], held = [];
+  const hands = data.robot.arms.map(() => []), tints = data.robot.arms.map(() => []), base = [], held = [];
   for (const body of data.bodies) body.stays.forEach((stay, i) => {
-    if (stay.held) held.push([stay.since, body.stays[i + 1] ? body.stays[i + 1].since : duration]);
+    if (stay.held) held.push([stay.since, body.stays[i + 1] ? body.stays[i + 1].since : duration, stay.arm]);
   });
   for (let i = 0; i < times.length; i++) {
-    const row = rows.subarray(WIDTH * i, WIDTH * (i + 1)), T = linksAt(row).tool;
-    hand.push([T[3], T[7], T[11]]);
-    tints.push(held.some(([a, b]) => a <= times[i] && times[i] <= b) ? COLOURS.full : COLOURS.empty);
+    const row = rows.subarray(WIDTH * i, WIDTH * (i + 1)), tools = linksAt(row).tools;
+    tools.forEach((T, arm) => {
+      hands[arm].push([T[3], T[7], T[11]]);
+      const full = held.some(([a, b, of]) => of === arm && a <= times[i] && times[i] <= b);
+      tints[arm].push(full ? COLOURS.full : COLOURS.empty);
+    });
     base.push([row[0], row[1], 0.01]);
   }
-  drawn.hand = drawer.buffer(pack(hand, tints));
+  drawn.hands = hands.map((hand, arm) => drawer.buffer(pack(hand, tints[arm])));
   drawn.base = drawer.buffer(pack(base, COLOURS.drive));
 }
 
@@ -130,12 +138,12 @@ function prepareSamples() {
 const shown = (layer) => !state.hidden.has(layer);
 
 function scene() {
-  const row = rowNow(), { places, tool } = linksAt(row);
+  const row = rowNow(), { places, tools, tool } = linksAt(row);
   const solids = [{ mesh: drawn.floor, place: M.one(), paint: [0.86, 0.85, 0.83, 1], floor: true }], lines = [];
   if (shown("links")) for (const link of drawn.links) for (const { mesh, colour } of link.meshes) solids.push({ mesh, place: places[link.name], paint: colour });
   const spots = {}, pointed = state.pointed;
   for (const { body, meshes } of drawn.bodies) {
-    const place = spots[body.name] = placeOf(body, state.time, tool);
+    const place = spots[body.name] = placeOf(body, state.time, tools);
     const hit = pointed && pointed.others.includes(body.name);
     for (const { mesh, colour } of meshes) solids.push({ mesh, place, paint: hit ? [0.9, 0.1, 0.1, 1] : colour });
     if (pointed && pointed.body === body.name && pointed.kind === "placement")
@@ -144,7 +152,7 @@ function scene() {
   solids.push(...inspectionSolids(places));
   lines.push({ mesh: drawn.room, kind: "LINE_STRIP" }, ...inspectionLines(places));
   if (shown("surfaces")) for (const mesh of drawn.surfaces) lines.push({ mesh, kind: "LINE_STRIP" });
-  if (drawn.hand && shown("hand path")) lines.push({ mesh: drawn.hand, kind: "LINE_STRIP" });
+  if (drawn.hands && shown("hand path")) for (const mesh of drawn.hands) lines.push({ mesh, kind: "LINE_STRIP" });
   if (drawn.base && shown("base path")) lines.push({ mesh: drawn.base, kind: "LINE_STRIP" });
   for (const [name, group] of groups) if (shown(name)) lines.push({ mesh: group.mesh, kind: "POINTS", size: 9, round: true, alpha: 0.9 });
   if (shown("grasps")) for (const { sample, mesh } of drawn.grasps)

@@ -13,5 +13,5 @@ window.tamp = {
   data, state, go, camera, groups,
   tool: () => linksAt(rowNow()).tool,
   links: () => linksAt(rowNow()).places,
-  bodies: () => Object.fromEntries(data.bodies.map((body) => [body.name, placeOf(body, state.time, window.tamp.tool())])),
+  bodies: () => Object.fromEntries(data.bodies.map((body) => [body.name, placeOf(body, state.time, linksAt(rowNow()).tools)])),
 };

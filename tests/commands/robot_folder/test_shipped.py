@@ -25,6 +25,8 @@ def problem_for(name: str, size: str) -> str:
     robot = ROBOTS[name]()
     if robot.suction is not None and size == "four_objects":
         return "parcels"  # no mug: what is open closes no cup
+    if robot.beside:
+        return {"one_object": "two_arms_handover", "four_objects": "two_arms_tables"}[size]
     return f"bench_{size}" if robot.drive == "fixed" else size
 
 

@@ -143,6 +143,7 @@ def test_home_is_compact_and_points_down(robot: Robot) -> None:
 def test_every_robot_is_complete(name: str) -> None:
     robot = ROBOTS[name]()
     assert robot.name == name and robot.urdf.is_file()
-    assert robot.links[0].name == "base"
-    grasping = [finger.child for finger in robot.fingers] or [robot.hand]
+    assert robot.links[0].name == robot.base
+    last = robot.arms[-1]
+    grasping = [finger.child for finger in last.fingers] or [last.hand]
     assert [link.name for link in robot.links[-len(grasping) :]] == grasping
