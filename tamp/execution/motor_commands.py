@@ -136,7 +136,11 @@ class TrajectoryPlayer:
         """Check whether the body is where the fingers close, or at the cup: what is not there is
         not held by a constraint either.
         """
-        return body is not None and body in self._world.solids and self._world.near_fingers(body)
+        return (
+            body is not None
+            and body in self._world.solids
+            and self._world.near_fingers(body, self._world.reach_of(body))
+        )
 
     def _wait(self, seconds: float, watch: ContactMonitor) -> None:
         for step in range(round(seconds * COMMANDS_PER_SECOND)):

@@ -22,6 +22,9 @@ BASE_FORCE = 2e4
 BETWEEN_FINGERS_M = 0.004
 """Metres from both fingers within which a body counts as between them."""
 
+BETWEEN_HANDS_M = 0.01
+"""The same of a body that another hand holds out: both arms are off by some millimetres."""
+
 FINGER_SPEED = 0.05
 """Metres a second of each finger."""
 
@@ -92,6 +95,12 @@ class MotorSimulation(World):
         """Use the arm of a name; the first without one."""
         names = [one.arm for one in self.arms]
         self.used = 0 if arm is None else names.index(arm)
+
+    def reach_of(self, body: str) -> float:
+        """Return within how many metres of both fingers a body counts as between them."""
+        others = (hand for number, hand in enumerate(self.hands) if number != self.used)
+        held_out = any(hand.bound == body for hand in others)
+        return BETWEEN_HANDS_M if held_out else BETWEEN_FINGERS_M
 
     @property
     def joints(self) -> slice:

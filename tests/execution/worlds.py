@@ -48,8 +48,11 @@ class Noting:
     def touches(self) -> dict[tuple[str, str], float]:
         return dict(self.felt)
 
-    def near_fingers(self, body: str) -> bool:
+    def near_fingers(self, body: str, reach: float) -> bool:
         return self.near
+
+    def reach_of(self, body: str) -> float:
+        return 0.004
 
     def attach(self, body: str) -> None:
         self.bound = body

@@ -94,7 +94,8 @@ def judged(root: Path, tmp_path: Path) -> Callable[..., Any]:
         found = Relations(plan, Still(scene), domain, given, log)  # type: ignore[arg-type]
         now = [("at-pose", *pair.split()) for pair in at.split(", ") if at]
         for _ in range(times):
-            seen = found.observed(State.of([*state, *now]), in_hand)
+            held = frozenset() if in_hand is None else frozenset({in_hand})
+            seen = found.observed(State.of([*state, *now]), held)
         return seen, asked, found, log
 
     return judge
@@ -199,4 +200,4 @@ def test_without_classifiers_the_state_is_as_it_was(root: Path, tmp_path: Path) 
     plan = PlanFile(None, (), "r", {}, (), "", {}, (), (), 0.0, 0.0)
     domain = parse_domain(domain_file.read_text(), domain_file)
     state = State.of([("hand-empty",)])
-    assert Relations(plan, None, domain, {}, Log()).observed(state, None) is state  # type: ignore[arg-type]
+    assert Relations(plan, None, domain, {}, Log()).observed(state, frozenset()) is state  # type: ignore[arg-type]

@@ -1,0 +1,163 @@
+"""Several arms on one body: each moves as a robot to which the others stand still, with what they hold."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tamp.errors import InputError
+from tamp.geometric.collision.collisions import Collisions
+from tamp.geometric.loading.robot_folder import read_robot
+from tamp.geometric.loading.robots import ASSETS, ROBOTS
+from tamp.geometric.robot.arms import Posture, beside
+from tamp.geometric.robot.inverse_kinematics import ArmIK
+from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics
+from tamp.geometric.robot.robot import Link, Robot
+from tamp.geometric.robot.states import arm_of, columns, rest_row, with_arm
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Part, RobotStart, Room, Scene
+from tamp.simulation.engines import installed, open_world
+from tamp.verification.collision_sweep import CollisionFindings, Sweeper
+
+TWO = ROBOTS["two_pandas"]()
+SCENE = Scene("s", {}, RobotStart("two_pandas", (0.0, 0.0, 0.0)), Room((-3, 3), (-3, 3)))
+
+
+@pytest.fixture(scope="module")
+def into_the_right() -> tuple[float, ...]:
+    """The left arm's configuration in which its hand meets the right one's at home."""
+    left, right = TWO.arms
+    T_base_tool = Kinematics(right).tool(conf(right, right.home)).copy()
+    T_base_tool[1, 3] += 0.15
+    found = ArmIK(left).solve(T_base_tool)
+    assert len(found)
+    return tuple(found[0].tolist())
+
+
+def conf(arm: Robot, joints: tuple[float, ...]) -> np.ndarray:
+    return np.array([0.0, 0.0, 0.0, *joints])
+
+
+def test_all_arms_have_the_links_of_all() -> None:
+    left, right = TWO.arms
+    assert (left.arm, right.arm) == ("left", "right")
+    assert {link.name for link in left.links} == {link.name for link in right.links}
+    assert left.standing.keys() | right.standing.keys() == {
+        link.name for link in TWO.links if link.name != TWO.base
+    }
+    assert len(rest_row(TWO)) == 3 + 2 * 8
+    assert columns(TWO) == (slice(3, 11), slice(11, 19))
+    with pytest.raises(KeyError):
+        arm_of(TWO, "middle")
+
+
+def test_an_arm_that_stands_still_is_where_its_own_kinematics_have_it(
+    rng: np.random.Generator,
+) -> None:
+    for moving, other in (TWO.arms, TWO.arms[::-1]):
+        joints = tuple(rng.uniform(other.lower, other.upper).tolist())
+        still = beside(TWO.arms, moving.arm, {other.arm: Posture(joints, 0.03)})
+        seen = Kinematics(still).link_poses(conf(moving, moving.home), moving.opening)
+        own = Kinematics(dataclasses.replace(other, standing={}))
+        wanted = own.link_poses(conf(other, joints), 0.03)
+        for name in still.standing:
+            assert seen[name] == pytest.approx(wanted[name], abs=1e-9)
+
+
+def test_what_another_arm_holds_stands_still_with_it() -> None:
+    bar = Link("bar", (Part(Box((0.3, 0.03, 0.03))),))
+    T_tool_bar = Pose((0.0, 0.01, 0.02))
+    left, right = TWO.arms
+    posture = Posture(right.home, 0.03, (bar, T_tool_bar))
+    still = beside(TWO.arms, "left", {"right": posture})
+    T_tool = Kinematics(right).tool(conf(right, right.home))
+    assert still.standing["bar"].matrix == pytest.approx(T_tool @ T_tool_bar.matrix, abs=1e-9)
+    assert still.links[-1] is bar and left.links[-1] is not bar
+
+
+def test_arms_meet_and_only_where_the_other_stands(into_the_right: tuple[float, ...]) -> None:
+    aside = (-1.57, *TWO.home[1:])
+    free = []
+    for right in (TWO.arms[1].home, aside):
+        robot = beside(TWO.arms, "left", {"right": Posture(right, 0.08)})
+        arrangement = Collisions(SCENE, robot, Kinematics(robot)).arrangement({})
+        assert arrangement.free(conf(robot, robot.home))
+        hit = arrangement.hits(conf(robot, into_the_right))
+        free.append(hit is None)
+        assert hit is None or {name.split("_")[0] for name in hit} == {"left", "right"}
+    assert free == [False, True]
+
+
+@pytest.mark.parametrize("engine", [name for name in ("pybullet", "mujoco") if installed(name)])
+def test_the_judge_sees_arms_meet(engine: str, into_the_right: tuple[float, ...]) -> None:
+    row = with_arm(TWO, rest_row(TWO), 0, into_the_right, None)
+    with open_world(SCENE, TWO, name=engine) as world:
+        for state, meets in ((rest_row(TWO), False), (row, True)):
+            findings = CollisionFindings()
+            Sweeper(world, TWO).sweep(state[None], np.zeros(1), (), findings)
+            owners = [{name.split("_")[0] for name in pair} for pair in findings.worst]
+            assert ({"left", "right"} in owners) is meets
+
+
+def test_kinematics_of_all_arms_are_those_of_each(rng: np.random.Generator) -> None:
+    row = rest_row(TWO, (0.1, 0.2, 0.3))
+    for number, arm in enumerate(TWO.arms):
+        row = with_arm(TWO, row, number, rng.uniform(arm.lower, arm.upper).tolist(), 0.02)
+    both = ArmsKinematics(TWO)
+    poses = both.link_poses(row)
+    assert poses.keys() == {link.name for link in TWO.links}
+    for number, arm in enumerate(TWO.arms):
+        T_world_tool = poses[arm.hand] @ arm.T_hand_tool.matrix
+        assert both.tool(row, number) == pytest.approx(T_world_tool, abs=1e-9)
+
+
+GOOD = (ASSETS / "two_pandas" / "robot.yaml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("was", "becomes", "message"),
+    [
+        ("robot: panda_fixed", "robot: no_such_robot", "no robot's folder 'no_such_robot'"),
+        (
+            "robot: panda_fixed",
+            "robot: two_pandas",
+            "the robot 'two_pandas' has several arms itself",
+        ),
+        ("  left:", "  Left:", "'Left' is no name of an arm"),
+        ("  left:", "  right:", "right"),
+        ("drive: fixed", "drive: omnidirectional", "unknown drive of a robot with several arms"),
+        (
+            "quaternion: [0.0, 0.0, 0.0, 1.0]",
+            "quaternion: [0.0, 0.0, 0.0, 2.0]",
+            "its norm is not 1",
+        ),
+        ("arms:", "arms: {}\nothers:", "others"),
+    ],
+)
+def test_bad_arms_are_refused_with_the_reason(
+    was: str, becomes: str, message: str, tmp_path: Path
+) -> None:
+    assert was in GOOD
+    (tmp_path / "robot.yaml").write_text(GOOD.replace(was, becomes), encoding="utf-8")
+    with pytest.raises(InputError, match=message) as error:
+        read_robot(tmp_path)
+    assert "robot.yaml" in str(error.value)
+
+
+def test_one_arm_is_no_body_of_several(tmp_path: Path) -> None:
+    text = GOOD[: GOOD.index("  right:")]
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match="several arms are at least two"):
+        read_robot(tmp_path)
+
+
+def test_a_shipped_robots_arm_is_found_by_its_name(tmp_path: Path) -> None:
+    text = GOOD.replace("robot: panda_fixed", "robot: xarm7")
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    made = read_robot(tmp_path)
+    assert [arm.arm for arm in made.arms] == ["left", "right"]
+    assert all(link.name.startswith(("pedestal", "left_", "right_")) for link in made.links)
+    assert {file.parent.name for file in made.files} == {tmp_path.name, "xarm7"}
