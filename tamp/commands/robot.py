@@ -216,15 +216,17 @@ def _check(name: str) -> None:
     from tamp.geometric.robot.spheres import link_covers
 
     robot = load_robot(find_robot(name))
-    Reachability(robot)
+    if not robot.beside:  # several arms are fixed, and ask no table where to stand
+        Reachability(robot)
     link_covers(robot)
     check_home(robot)
     off = against_physics(robot)
-    share = solved(robot)
+    share = min(map(solved, robot.arms))
     if share < 0.98:
         raise InputError(f"inverse kinematics finds {share:.1%} of reachable poses only",
                          file=robot.folder)  # fmt: skip
-    say(f"{robot.name}: {len(robot.joints)} joints, {robot.drive} base, sound")
+    joints = " + ".join(str(len(arm.joints)) for arm in robot.arms)
+    say(f"{robot.name}: {joints} joints, {robot.drive} base, sound")
     say(f"  frames differ from pybullet's by {off:.1g}; inverse kinematics finds {share:.1%}")
 
 

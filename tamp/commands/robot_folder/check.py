@@ -18,7 +18,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.xml_file import read_xml
 from tamp.geometric.robot.chain import Chain
 from tamp.geometric.robot.inverse_kinematics import ArmIK
-from tamp.geometric.robot.kinematics import Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
@@ -118,14 +118,15 @@ def against_physics(robot: Robot) -> float:
     scene = Scene(
         "check", {}, RobotStart(robot.name, (0.0, 0.0, 0.0), None), Room((-1, 1), (-1, 1))
     )
-    kinematics, rng, worst = Kinematics(robot), np.random.default_rng(0), 0.0
+    kinematics, rng, worst = ArmsKinematics(robot), np.random.default_rng(0), 0.0
+    low, high = [-1.0] * 3, [1.0] * 3
+    for arm in robot.arms:
+        low, high = [*low, *arm.lower, 0.0], [*high, *arm.upper, arm.opening]
     with open_world(scene, robot) as world:
         for _ in range(STATES):
-            base = rng.uniform(-1.0, 1.0, 3)
-            q = rng.uniform(np.array(robot.lower), np.array(robot.upper))
-            opening = float(rng.uniform(0.0, robot.opening))
-            world.set_robot(base, q, opening)
-            ours = kinematics.link_poses(np.concatenate([base, q]), opening)
+            row = rng.uniform(np.array(low), np.array(high))
+            world.set_state(row)
+            ours = kinematics.link_poses(row)
             for name, T in world.link_poses().items():
                 worst = max(worst, float(np.abs(T - ours[name]).max()))
     if worst > SAME:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import tamp
+from tamp.commands.robot import main
 from tamp.commands.robot_folder.check import against_physics
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.execution.execute import ExecutionOptions, execute
@@ -107,3 +108,12 @@ def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     assert verify(tmp_path / "plan.json", engine=engine).holds
     stored = open_plan(tmp_path / "plan.json")
     assert execute(stored, ExecutionOptions(grasp="friction", engine=engine)).reached
+
+
+@pytest.mark.parametrize("name", ["panda_fixed", "two_pandas"])
+def test_a_robots_folder_is_checked_with_all_its_arms(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["check", name]) == 0
+    joints = " + ".join(["7"] * len(ROBOTS[name]().arms))
+    assert f"{name}: {joints} joints, fixed base, sound" in capsys.readouterr().out
