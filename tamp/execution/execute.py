@@ -63,8 +63,7 @@ def execute(stored: PlanBundle, execution_options: ExecutionOptions | None = Non
     chosen = execution_options or ExecutionOptions()
     scene = stored.loaded.scene
     lasting = chosen.replanner is not None and bool(stored.robot.beside)
-    if lasting:
-        chosen = replace(chosen, replanner=None)
+    chosen = replace(chosen, replanner=None) if lasting else chosen
 
     check_ranges(stored.plan, stored.robot, scene.room)
     plan, cut = without_pauses(stored.plan)
