@@ -29,7 +29,7 @@ class Segment:
     Attributes:
         part: "base", "arm" or "gripper".
         times: Seconds from the segment's start, shape (n,), increasing from 0.
-        positions: (n, 3) x, y, yaw; (n, 7) joint angles; (n, 1) the fingers' opening. Linear in
+        positions: (n, 3) x, y, yaw; (n, joints) of the arm; (n, 1) the fingers' opening. Linear in
             between.
         opening: Of the fingers, metres, while base or arm move.
         holding: The body in the hand meanwhile.
