@@ -14,7 +14,9 @@ ALTERNATIVES = 512
 """Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
 
 MOST_WORK = 100_000
-"""Rules opened and conjunctions joined for a part of the goal, at most: the rest excludes none."""
+"""Rules opened and conjunctions joined for a part of the goal, and for the choices of all parts
+together, at most: the rest excludes none.
+"""
 
 Literal = tuple[Fact, bool]
 """A fact, and whether it is to hold."""
@@ -49,10 +51,12 @@ def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
     for literal in literals:
         for part in _opened(literal, rules, auxiliary, ()):
             opened[part] = None
-    return [_part(literal, rules, auxiliary) for literal in opened]
+    opener = _Opener(rules)
+    return [_part(literal, rules, auxiliary, opener) for literal in opened]
 
 
-def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str]) -> Part:
+def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str], opener: _Opener) -> Part:
+    """Open a conjunct; `opener` opens the choices of all of them, whose work is bounded as one."""
     fact, wanted = literal
     choices: list[tuple[Part, ...]] = []
     if wanted and fact[0] in auxiliary:
@@ -60,7 +64,7 @@ def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str]) -> Part:
             opened = dict.fromkeys(
                 part for one in _body(axiom) for part in _opened(one, rules, auxiliary, (fact,))
             )
-            choices.append(tuple(Part(one, tuple(_Opener(rules).ways(one))) for one in opened))
+            choices.append(tuple(Part(one, tuple(opener.ways(one))) for one in opened))
     return Part(literal, tuple(_Opener(rules).ways(literal)), tuple(choices))
 
 

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tamp.symbolic.pddl.structs import Fact
+from tamp.symbolic.search import goal_ways as module
 from tamp.symbolic.search.goal_ways import ALTERNATIVES, Way, goal_parts
 from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Meaning
 
@@ -159,3 +160,26 @@ def test_a_literal_holds_just_where_one_of_its_ways_does(
 def test_parts_come_in_one_order(order: tuple[str, ...]) -> None:
     parts = goal_parts(task(Goal(facts(order), facts(["c"]))))
     assert [part.literal for part in parts] == [(("a",), True), (("b",), True), (("c",), False)]
+
+
+def test_all_choices_of_a_goal_are_opened_with_work_that_is_bounded_as_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Sixty rules of an auxiliary goal, each with a part whose ways double thirty times over."""
+    monkeypatch.setattr(module, "MOST_WORK", 500)
+    asked: list[Fact] = []
+    opened = module._Opener.ways
+
+    def counted(self: module._Opener, literal: module.Literal, *above: frozenset[Fact]) -> object:
+        asked.append(literal[0])
+        return opened(self, literal, *above)
+
+    monkeypatch.setattr(module._Opener, "ways", counted)
+    doubling = [axiom(f"p{k}", f"p{k + 1} {also}") for k in range(30) for also in ("a", "b")]
+    choices = [axiom("goal", f"p{k % 5} q{k}") for k in range(60)]
+    reached = [axiom(f"q{k}", "c") for k in range(60)]
+    (part,) = goal_parts(
+        task(Goal(facts(["goal"]), facts([])), *doubling, *choices, *reached, meanings=("goal",))
+    )
+    assert len(part.choices) == 60
+    assert len(asked) < 10 * 500
