@@ -13,6 +13,7 @@ import sys
 import time
 import types
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -211,7 +212,7 @@ def test_an_interrupt_inside_a_stream(
         signal.raise_signal(signal.SIGINT)
         yield None
 
-    monkeypatch.setitem(STREAMS, stream, interrupted)
+    monkeypatch.setitem(STREAMS, stream, replace(STREAMS[stream], function=interrupted))
     assert run(["one_object", "--json", "--out", str(tmp_path / "plan.json")]) == INTERRUPTED
     out, err = capsys.readouterr()
     document = json.loads(out)
