@@ -51,13 +51,13 @@ def initial_state(
     for name in scene.cavities:
         _object(state, domain, name, "container")
 
-    known = declares_arms(domain)
-    for arm in arms if known else ():
+    has_arms = declares_arms(domain)
+    for arm in arms if has_arms else ():
         _object(state, domain, arm, ARM)
 
     start = _value(state, domain, START_BASE, "base-conf", BaseConf(*scene.robot.base))
     facts: list[Fact] = [("at-base", start), ("standing", start)]
-    if known:
+    if has_arms:
         facts += [("hand-empty", arm) for arm in arms]
     elif holding is None:
         facts.append(("hand-empty",))

@@ -124,9 +124,11 @@ class MujocoWorld(World):
         return np.array([self._model.joint(name).qposadr[0] for name in joints], dtype=np.intp)
 
     def _solid(self, owner: str, number: int, piece: int) -> Solid:
-        """Describe one shape of a body, or all, with the box around it in the body's frame."""
+        """Describe one shape of a body, or all, with the box around it in the body's frame: a point
+        of a link without shapes, such as one that two joints share.
+        """
         geoms = self._geoms[number] if piece < 0 else [self._geoms[number][piece]]
-        corners = np.concatenate([self._corners(geom) for geom in geoms])
+        corners = np.concatenate([self._corners(geom) for geom in geoms] or [np.zeros((1, 3))])
         low, high = corners.min(axis=0), corners.max(axis=0)
         offset = np.eye(4)
         return Solid(owner, number, piece, offset, (low + high) / 2, (high - low) / 2)

@@ -249,7 +249,7 @@ class BulletWorld(World):
             index[robot.prefix + info[12].decode()] = number
             if (name := robot.prefix + info[1].decode()) in moving:
                 joints[name] = number
-        still = {robot.base, robot.foot, *robot.standing}
+        still = {robot.base, robot.foot, *robot.still_links}
         others = [link.name for link in robot.links if link.name not in still]
         for name in (robot.foot, *others):
             self.links[name] = self._link_solid(name, handle, index[name], T_foot_com)

@@ -38,7 +38,7 @@ class Loads:
         self._upright: dict[str, Array] = {}
 
     def on(
-        self, hold: Hold, body: str, T_world_tool: Array, state: State, arm: int
+        self, hold: Hold, body: str, T_world_tool: Array, state: State, arm: int = 0
     ) -> tuple[Held, ...]:
         """Return what rides on a body that the hand closes on, of which it is felt that it rests
         there; the rest is left behind. The plan must say the same of it.

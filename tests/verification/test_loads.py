@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
 
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.plan.read import Hold, Value
-from tamp.verification.execution_state import Held
+from tamp.verification.execution_state import ExecutionState, Held
 from tamp.verification.loads import LOADED_TILT_RAD, Loads
 from tamp.verification.semantics import State
 from tamp.verification.violation_log import Log
@@ -130,14 +129,14 @@ def test_a_rider_must_be_where_the_plan_has_it(off: float, wrong: bool) -> None:
 def test_a_domain_whose_riding_means_something_else_has_no_loads() -> None:
     made, log = loads(arity=3)
     assert made.on(hold(), "Tray", TOOL, state(RIDING)) == ()
-    made.compare(state(RIDING), SimpleNamespace(held=None, in_hand=None))  # type: ignore[arg-type]
+    made.compare(state(RIDING), SimpleNamespace(held=(), in_hand=frozenset()))  # type: ignore[arg-type]
     assert log.violations == []
 
 
 def lean(log: Log, made: Loads, *tilts: float, load: bool = True) -> list[str]:
     held = Held("Tray", np.linalg.inv(TOOL) @ tray(), (Held("cup", np.eye(4)),) if load else ())
     sweeper = SimpleNamespace(
-        tool=lambda row: tray(tilt=float(row[0])) @ np.linalg.inv(tray()) @ TOOL
+        tool=lambda row, arm: tray(tilt=float(row[0])) @ np.linalg.inv(tray()) @ TOOL
     )
     made.check_level(held, np.array([[tilt] for tilt in tilts]), sweeper)  # type: ignore[arg-type]
     return [one.message for one in log.violations]
@@ -155,12 +154,11 @@ def test_a_loaded_body_stays_level_on_the_way() -> None:
 def test_nothing_on_it_may_be_turned_over() -> None:
     made, log = loads()
     assert lean(log, made, 2.0, load=False) == []
-    made.check_level(None, np.zeros((1, 11)), None)  # type: ignore[arg-type]
 
 
-def compared(at: dict[str, Array], held: Any = None, in_hand: str | None = None) -> list[str]:
+def compared(at: dict[str, Array], *held: Held) -> list[str]:
     made, log = loads(at)
-    course: Any = SimpleNamespace(held=held, in_hand=in_hand)
+    course = ExecutionState(np.zeros(11), dict(enumerate(held)), 0.0)
     made.compare(state(RIDING), course)
     return [one.message for one in log.violations]
 
@@ -175,13 +173,12 @@ def test_a_rider_is_where_the_body_below_has_got_to() -> None:
 
 def test_what_rides_on_the_body_in_the_hand_is_in_the_hand_too() -> None:
     at = {"Tray": tray(), "cup": tray() @ UP}
-    held = SimpleNamespace(load=(SimpleNamespace(body="cup"),))
-    assert compared(at, held, "Tray") == []
-    assert compared(at, SimpleNamespace(load=()), "Tray") == ["cup does not ride on Tray"]
-    assert compared(at, SimpleNamespace(load=()), "spoon") == []
+    assert compared(at, Held("Tray", TOOL, (Held("cup", TOOL),))) == []
+    assert compared(at, Held("Tray", TOOL)) == ["cup does not ride on Tray"]
+    assert compared(at, Held("spoon", TOOL)) == []
 
 
 def test_riding_is_of_bodies_and_poses() -> None:
     made, log = loads(values={**VALUES, "cup_p": Value("grasp", None)})
-    made.compare(state(RIDING), SimpleNamespace(held=None, in_hand=None))  # type: ignore[arg-type]
+    made.compare(state(RIDING), SimpleNamespace(held=(), in_hand=frozenset()))  # type: ignore[arg-type]
     assert log.violations[0].message == "(riding cup cup_p tray tray_p) is not of bodies and poses"

@@ -122,5 +122,5 @@ class RobotTables:
 def _checked(first: str, second: str, robot: Robot) -> bool:
     if first == second or (min(first, second), max(first, second)) in robot.allowed:
         return False
-    stand = (first in robot.standing, second in robot.standing)
+    stand = (first in robot.still_links, second in robot.still_links)
     return not all(stand) and not (any(stand) and {first, second} & {robot.base, robot.foot})

@@ -61,20 +61,20 @@ def beside(arms: Iterable[Robot], name: str, postures: Mapping[str, Posture]) ->
     """
     arms = tuple(arms)
     moving = next(arm for arm in arms if arm.arm == name)
-    standing: dict[str, Pose] = {}
+    still_links: dict[str, Pose] = {}
     held: list[Link] = []
 
     for arm in arms:
         if arm is moving:
             continue
         posture = postures.get(arm.arm) or at_home(arm)
-        standing |= _link_poses(arm, posture)
+        still_links |= _link_poses(arm, posture)
         if posture.held is not None:
             body, T_tool_body = posture.held
             held.append(body)
-            standing[body.name] = standing[arm.hand] @ arm.T_hand_tool @ T_tool_body
+            still_links[body.name] = still_links[arm.hand] @ arm.T_hand_tool @ T_tool_body
 
-    return replace(moving, links=(*moving.links, *held), standing=standing)
+    return replace(moving, links=(*moving.links, *held), still_links=still_links)
 
 
 def _link_poses(arm: Robot, posture: Posture) -> dict[str, Pose]:

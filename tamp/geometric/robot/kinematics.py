@@ -90,7 +90,7 @@ class Kinematics:
             T_hand_finger = origin.copy()
             T_hand_finger[:3, 3] += axis * (opening / 2)
             poses[name] = T_world_hand @ T_hand_finger
-        for name, T_base_link in robot.standing.items():
+        for name, T_base_link in robot.still_links.items():
             poses[name] = T_world_base @ T_base_link.matrix
         return poses
 
@@ -131,7 +131,7 @@ class ArmsKinematics:
     """FK of all arms of a robot in its states [x, y, yaw, then q1..qn, opening of each arm]."""
 
     def __init__(self, robot: Robot) -> None:
-        self._arms = [Kinematics(replace(arm, standing={})) for arm in robot.arms]
+        self._arms = [Kinematics(replace(arm, still_links={})) for arm in robot.arms]
         self._columns = columns(robot)
 
     def _conf(self, row: Float[Array, " width"], arm: int) -> Float[Array, " conf"]:

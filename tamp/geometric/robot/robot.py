@@ -79,7 +79,7 @@ class Robot:
         prefix: What the names of the arm's links and joints begin with, beside those in its URDF.
         beside: The other arms of one body: each a robot of the same base and links, which holds
             this arm still. An arm alone has none.
-        standing: Links that are not the arm's and stand still: their poses in the base's frame.
+        still_links: Links that are not the arm's and stand still: their poses in the base's frame.
         described: Folders with the covers of links, each with what the links' names begin with
             beside those in the folder; none: the robot's own.
     """
@@ -112,7 +112,7 @@ class Robot:
     arm: str = "arm"
     prefix: str = ""
     beside: tuple[Robot, ...] = ()
-    standing: Mapping[str, Pose] = field(default_factory=dict[str, Pose])
+    still_links: Mapping[str, Pose] = field(default_factory=dict[str, Pose])
     described: tuple[tuple[str, Path], ...] = ()
 
     def link(self, name: str) -> Link:
@@ -151,8 +151,8 @@ class Robot:
             return 0, Pose()
         if name == self.foot:
             return 0, self.T_base_arm
-        if name in self.standing:
-            return 0, self.standing[name]
+        if name in self.still_links:
+            return 0, self.still_links[name]
         for number, joint in enumerate(self.joints, start=1):
             if joint.child == name:
                 return number, Pose()

@@ -24,12 +24,12 @@ def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"]
     covers = {}
     for prefix, folder in robot.described or (("", robot.folder),):
         file = folder / "geometry.npz"
-        known = _read(file, file.stat().st_mtime_ns)
+        covered = _read(file, file.stat().st_mtime_ns)
         for link in robot.links:
             for k in range(len(link.parts) if link.name.startswith(prefix) else 0):
                 key = f"{link.name.removeprefix(prefix)}/{k}"
-                if key in known:
-                    covers[link.name, k] = known[key]
+                if key in covered:
+                    covers[link.name, k] = covered[key]
     return covers
 
 

@@ -45,7 +45,7 @@ def test_all_arms_have_the_links_of_all() -> None:
     left, right = TWO.arms
     assert (left.arm, right.arm) == ("left", "right")
     assert {link.name for link in left.links} == {link.name for link in right.links}
-    assert left.standing.keys() | right.standing.keys() == {
+    assert left.still_links.keys() | right.still_links.keys() == {
         link.name for link in TWO.links if link.name != TWO.base
     }
     assert len(rest_row(TWO)) == 3 + 2 * 8
@@ -61,9 +61,9 @@ def test_an_arm_that_stands_still_is_where_its_own_kinematics_have_it(
         joints = tuple(rng.uniform(other.lower, other.upper).tolist())
         still = beside(TWO.arms, moving.arm, {other.arm: Posture(joints, 0.03)})
         seen = Kinematics(still).link_poses(conf(moving, moving.home), moving.opening)
-        own = Kinematics(dataclasses.replace(other, standing={}))
+        own = Kinematics(dataclasses.replace(other, still_links={}))
         wanted = own.link_poses(conf(other, joints), 0.03)
-        for name in still.standing:
+        for name in still.still_links:
             assert seen[name] == pytest.approx(wanted[name], abs=1e-9)
 
 
@@ -74,7 +74,7 @@ def test_what_another_arm_holds_stands_still_with_it() -> None:
     posture = Posture(right.home, 0.03, (bar, T_tool_bar))
     still = beside(TWO.arms, "left", {"right": posture})
     T_tool = Kinematics(right).tool(conf(right, right.home))
-    assert still.standing["bar"].matrix == pytest.approx(T_tool @ T_tool_bar.matrix, abs=1e-9)
+    assert still.still_links["bar"].matrix == pytest.approx(T_tool @ T_tool_bar.matrix, abs=1e-9)
     assert still.links[-1] is bar and left.links[-1] is not bar
 
 
