@@ -36,7 +36,8 @@ from tamp.simulation.mujoco_model import (
 from tamp.simulation.mujoco_world import MujocoWorld
 
 BASE_GAINS = (2e5, 1.5e4)
-"""Newtons a metre and newtons a metre a second of the base's motors, alike about its axis."""
+"""Newtons a metre and newtons a metre a second of the base's motors, alike about its axis, and of
+an arm's sliding joints: a lift bears the arm."""
 
 ARM_GAINS = {True: (4500.0, 450.0), False: (2000.0, 200.0)}
 """The same of the arm's, newton metres and radians: of strong joints, and of the others."""
@@ -79,11 +80,15 @@ class MujocoMotors(MujocoWorld, MotorSimulation):
         spec, mujoco = model.spec, self._mujoco
 
         joints = [joint.name for arm in self.arms for joint in arm.joints]
+        slides = [joint.kind == "prismatic" for arm in self.arms for joint in arm.joints]
         efforts = [effort for arm in self.arms for effort in arm.effort]
         for joint in joints:
             spec.joint(joint).armature = ROTOR_INERTIA_KG_M2
         gains = [BASE_GAINS] * len(BASE_JOINTS)
-        gains += [ARM_GAINS[effort >= STRONG_JOINT_NM] for effort in efforts]
+        gains += [
+            BASE_GAINS if slid else ARM_GAINS[effort >= STRONG_JOINT_NM]
+            for slid, effort in zip(slides, efforts, strict=True)
+        ]
         forces = (*(BASE_FORCE,) * len(BASE_JOINTS), *efforts)
         for name, (kp, kv), most in zip((*BASE_JOINTS, *joints), gains, forces, strict=True):
             self._add_motor(model, name, kp, kv, most)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 def arm_of(robot: Robot, name: str | None) -> Robot:
@@ -33,19 +37,23 @@ def columns(robot: Robot) -> tuple[slice, ...]:
     return tuple(found)
 
 
-def rest_row(robot: Robot, base: Iterable[float] = (0.0, 0.0, 0.0)) -> Array:
+def rest_row(robot: Robot, base: Iterable[float] = (0.0, 0.0, 0.0)) -> Float[Array, " width"]:
     """Return the state with the base at x, y, yaw, all arms at home and their fingers open."""
     return np.array([*base, *(number for arm in robot.arms for number in (*arm.home, arm.opening))])
 
 
-def start_row(robot: Robot, start: RobotStart) -> Array:
+def start_row(robot: Robot, start: RobotStart) -> Float[Array, " width"]:
     """Return the state in which a problem begins: where it says nothing, arms are at home."""
     return with_arm(robot, rest_row(robot, start.base), 0, start.arm, None)
 
 
 def with_arm(
-    robot: Robot, row: Array, arm: int, joints: Iterable[float] | None, opening: float | None
-) -> Array:
+    robot: Robot,
+    row: Float[Array, " width"],
+    arm: int,
+    joints: Iterable[float] | None,
+    opening: float | None,
+) -> Float[Array, " width"]:
     """Return a state that differs by where the arm of a number stands, or its fingers."""
     changed, where = row.copy(), columns(robot)[arm]
     if joints is not None:

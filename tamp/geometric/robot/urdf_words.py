@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from tamp.geometric.scene.pose import Array
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 
 def words(values: Iterable[float]) -> str:
@@ -13,7 +17,7 @@ def words(values: Iterable[float]) -> str:
     return " ".join(repr(float(value)) for value in values)
 
 
-def roll_pitch_yaw(R: Array) -> tuple[float, float, float]:
+def roll_pitch_yaw(R: Float[Array, "3 3"]) -> tuple[float, float, float]:
     """Return the angles of a rotation (3, 3) about fixed x, y and z, radians."""
     across = math.hypot(R[0, 0], R[1, 0])
     pitch = math.atan2(-R[2, 0], across)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,6 +20,9 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.loads import body_poses, load_of, plan_loaded_pick
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach
 from tamp.stream import Call, Rejection, RejectionKind
+
+if TYPE_CHECKING:
+    from jaxtyping import Float
 
 MAX_EFFORT = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
@@ -149,8 +153,8 @@ def _transits(
 
 def arm_ways(
     context: Context, poses: dict[str, Pose], held: Grasp | None, base: BaseConf,
-    out: Array, call: Call,
-) -> Iterator[Array | Rejection]:  # fmt: skip
+    out: Float[Array, " joints"], call: Call,
+) -> Iterator[Float[Array, "n joints"] | Rejection]:  # fmt: skip
     """Yield the arm's ways (n, joints) from home to a configuration (joints,), or why there is
     none, among bodies at poses.
     """
