@@ -264,7 +264,7 @@ def test_looking_around_moves_no_body(person_at: Callable[..., Any]) -> None:
 def test_the_front_is_where_one_looks_from(person_at: Callable[..., Any]) -> None:
     person, studio = person_at("left_of(a, b)")
     stand = studio.stage.scene.bodies[next(iter(studio.stage.scene.bodies))]
-    assert "front" in person.run("document.getElementById('names').textContent")
+    person.browser.wait("document.getElementById('names').textContent.includes('front')")
     yaw = person.run("tamp.camera.yaw")
     for _ in range(4):  # 96 degrees around
         person.drag((700, 130), (640, 150))
