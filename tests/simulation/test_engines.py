@@ -223,7 +223,8 @@ def test_every_shipped_robot_follows_its_motors(model: str, name: str) -> None:
     with open_actuated(
         Scene("alone", {}, RobotStart(model, (0.0, 0.0, 0.0)), ROOM), robot, name=name
     ) as world:
-        inward = np.where(world.conf[3:] + 0.2 < robot.upper, 1.0, -1.0)
+        upper = np.concatenate([arm.upper for arm in robot.arms])
+        inward = np.where(world.conf[3:] + 0.2 < upper, 1.0, -1.0)
         for _ in range(60):
             world.conf[3:] += inward * 0.2 / 60
             world.step_motors()
