@@ -26,8 +26,9 @@ from statistics import median
 
 import tyro
 
-from benchmarks.classical_domains import GENERATORS, Task, problem
+from benchmarks.classical_domains import GENERATORS
 from benchmarks.common import record, table
+from benchmarks.pddl_task import Task, problem
 
 PINS = ("up-fast-downward==1.0.0", "pyperplan==2.1")
 

@@ -46,13 +46,7 @@ def plan_pick_by(
     call: Call,
 ) -> Iterator[Motion | Rejection]:  # fmt: skip
     """Plan a pick by one of the arms, the others at home with what they hold."""
-    here = context.of_arm(arm, carried(call, arm))
-    refused = _reach_hits(here, grasp, base, reach)
-    if refused is not None:
-        yield refused
-        return
-    for found in plan_pick(here, body, pose, grasp, base, reach, call):
-        yield found if isinstance(found, Rejection) else of_arm(found, arm)
+    return _planned(plan_pick, context, arm, body, pose, grasp, base, reach, call)
 
 
 def plan_place_by(
@@ -60,12 +54,20 @@ def plan_place_by(
     call: Call,
 ) -> Iterator[Motion | Rejection]:  # fmt: skip
     """Plan a placement by one of the arms, the others at home with what they hold."""
+    return _planned(plan_place, context, arm, body, pose, grasp, base, reach, call)
+
+
+def _planned(
+    plan: Callable[..., Iterator[Motion | Rejection]], context: Context, arm: str, body: str,
+    pose: Pose, grasp: Grasp, base: BaseConf, reach: Reach, call: Call,
+) -> Iterator[Motion | Rejection]:  # fmt: skip
+    """Plan one arm's motion, once its last stretch is clear of what the others hold."""
     here = context.of_arm(arm, carried(call, arm))
     refused = _reach_hits(here, grasp, base, reach)
     if refused is not None:
         yield refused
         return
-    for found in plan_place(here, body, pose, grasp, base, reach, call):
+    for found in plan(here, body, pose, grasp, base, reach, call):
         yield found if isinstance(found, Rejection) else of_arm(found, arm)
 
 

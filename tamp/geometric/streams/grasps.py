@@ -52,11 +52,11 @@ MAX_FAILED_GRASPS = 4000
 no new way."""
 
 
-def _welcome(_: Grasp) -> None:
+def refuse_none(_: Grasp) -> None:
     """Refuse none."""
 
 
-def _anywhere(_: Array) -> bool:
+def take_any_way(_: Array) -> bool:
     """Take every way for free."""
     return True
 
@@ -66,8 +66,8 @@ def sample_grasps(
     robot: Robot,
     rng: np.random.Generator,
     ups: Sequence[Float[Array, " 3"]] = (),
-    refused: Callable[[Grasp], Rejection | None] = _welcome,
-    free: Callable[[Float[Array, "4 4"]], bool] = _anywhere,
+    refused: Callable[[Grasp], Rejection | None] = refuse_none,
+    free: Callable[[Float[Array, "4 4"]], bool] = take_any_way,
 ) -> Iterator[Grasp | Rejection]:
     """Yield grasps of a body: first the canonical ones in random order, then random antipodal ones
     without end.

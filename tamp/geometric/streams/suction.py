@@ -28,6 +28,7 @@ from tamp.geometric.streams.firmness import (
     SHAKE_SHARE,
 )
 from tamp.geometric.streams.grasp_directions import MAX_UPWARD_PART, across
+from tamp.geometric.streams.grasps import refuse_none, take_any_way
 from tamp.geometric.streams.hand_fit import BACK, CLEAR_APPROACH
 from tamp.geometric.values import Grasp
 from tamp.stream import Rejection
@@ -60,22 +61,13 @@ MAX_FAILED_CUPS = 2000
 """Random places in a row that may fail before the stream ends."""
 
 
-def _welcome(_: Grasp) -> None:
-    """Refuse none."""
-
-
-def _anywhere(_: Array) -> bool:
-    """Take every way for free."""
-    return True
-
-
 def sample_suction_grasps(
     body: Body,
     robot: Robot,
     rng: np.random.Generator,
     ups: Sequence[Float[Array, " 3"]] = (),
-    refused: Callable[[Grasp], Rejection | None] = _welcome,
-    free: Callable[[Float[Array, "4 4"]], bool] = _anywhere,
+    refused: Callable[[Grasp], Rejection | None] = refuse_none,
+    free: Callable[[Float[Array, "4 4"]], bool] = take_any_way,
 ) -> Iterator[Grasp | Rejection]:
     """Yield suction grasps of a body: first over its middle on each of its faces, those from above
     before those from the side, then anywhere on them without end.
