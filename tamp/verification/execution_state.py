@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from tamp.geometric.scene.pose import Array
+from tamp.plan.read import Segment
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,12 @@ class ExecutionState:
         """Return what is held, each body once."""
         return tuple({held.body: held for held in self.hands.values()}.values())
 
+    def shares(self, arm: int) -> bool:
+        """Check whether another hand holds what the arm of a number does."""
+        bodies = {number: held.body for number, held in self.hands.items()}
+        own = bodies.pop(arm, None)
+        return own in bodies.values()
+
     @property
     def in_hand(self) -> frozenset[str]:
         """Return the held bodies' names."""
@@ -49,3 +56,11 @@ class ExecutionState:
 def carried(held: Iterable[Held]) -> list[Held]:
     """Return all that is held, with what is carried on it."""
     return [one for hand in held for one in hand.all]
+
+
+def follow(row: Array, segment: Segment, where: slice) -> None:
+    """Write where a segment ends into the robot's row; `where`: the columns of its arm."""
+    arm = range(where.start, where.stop - 1)
+    columns: dict[str, Sequence[int]] = {"base": range(3), "arm": arm, "gripper": ()}
+    for column, value in zip(columns[segment.part], segment.positions[-1], strict=True):
+        row[column] = value

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Formula
 from tamp.verification.certified_facts import POSE_DIFFERENCE_M, POSE_DIFFERENCE_RAD, Certified
 from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
-from tamp.verification.execution_state import ExecutionState, Held, carried
+from tamp.verification.execution_state import ExecutionState, Held, carried, follow
 from tamp.verification.limits import limit_violations, moving_part
 from tamp.verification.loads import Loads
 from tamp.verification.relations import Relations
@@ -216,17 +215,21 @@ class Replay:
         elif segment.part == "arm":
             rows[:, joints] = segment.positions
             jump = float(np.abs(rows[0, joints] - course.row[joints]).max())
+            if held and course.shares(arm) and np.ptp(rows[:, joints], axis=0).max() > SEGMENT_JUMP:
+                self.log.add("grasp", f"an arm moves while two hands hold {held}", held)
         if jump > SEGMENT_JUMP:
-            message = f"the {segment.part} jumps by {jump:.3g} (m, rad)"
-            self.log.add("continuity", message, depth=jump)
+            self.log.add(
+                "continuity", f"the {segment.part} jumps by {jump:.3g} (m, rad)", depth=jump
+            )
         jump = abs(float(rows[0, fingers] - course.row[fingers]))
         if jump > SEGMENT_JUMP:
             self.log.add("continuity", f"the fingers jump by {1000 * jump:.1f} mm", depth=jump)
 
         says = segment.holding if segment.part != "gripper" else held and held.lower()
         if says != (held and held.lower()):
-            told = says or "nothing"
-            message = f"the plan says that the hand holds {told}, not {held or 'nothing'}"
+            message = (
+                f"the plan says that the hand holds {says or 'nothing'}, not {held or 'nothing'}"
+            )
             self.log.add("continuity", message)
         keeps = segment.part == "gripper" and segment.detach is None
         if keeps and held and np.ptp(rows[:, fingers]) > SEGMENT_JUMP:
@@ -276,7 +279,7 @@ class Replay:
 
         for segment in action.segments:
             arm = self._arm(segment)
-            _follow(row, segment, self._columns[arm])
+            follow(row, segment, self._columns[arm])
             if segment.attach is not None and segment.attach.body in self._bodies:
                 body = self._bodies[segment.attach.body]
                 grasped.add(body)
@@ -291,10 +294,3 @@ class Replay:
                 supporting_bodies |= self._supports.stand(held.body, frozenset()).on
                 self._world.place(held.body, before)
         return ExpectedContacts(frozenset(), frozenset(grasped), frozenset(supporting_bodies))
-
-
-def _follow(row: Array, segment: Segment, where: slice) -> None:
-    arm = range(where.start, where.stop - 1)
-    columns: dict[str, Sequence[int]] = {"base": range(3), "arm": arm, "gripper": ()}
-    for column, value in zip(columns[segment.part], segment.positions[-1], strict=True):
-        row[column] = value

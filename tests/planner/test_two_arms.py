@@ -127,6 +127,19 @@ def test_what_is_wrong_with_arms_is_seen(handed: dict[str, Any]) -> None:
     assert "certified" in said(certified)
 
 
+def test_no_hand_draws_back_from_what_two_hold(handed: dict[str, Any]) -> None:
+    """The giver's fingers slide off the bar while they are closed: they meet nothing on the way."""
+    plan = copy.deepcopy(handed)
+    (action,) = (one for one in plan["actions"] if one["name"] == "handover")
+    segments = action["segments"]
+    opens = next(k for k, one in enumerate(segments) if one.get("detach"))
+    (back,) = (k for k in range(opens + 1, len(segments)) if segments[k].get("arm") == "left")
+    segments[back] |= {"opening": segments[opens]["opening"][0], "holding": "bar"}
+    segments.insert(back, segments.pop(opens))
+    said = [one.message for one in verify(plan).violations]
+    assert "an arm moves while two hands hold bar" in said
+
+
 def test_an_arm_that_there_is_not_is_refused(handed: dict[str, Any]) -> None:
     plan = copy.deepcopy(handed)
     segments(plan)[0]["arm"] = "middle"
