@@ -56,7 +56,7 @@ def refuse_none(_: Grasp) -> None:
     """Refuse none."""
 
 
-def take_any_way(_: Array) -> bool:
+def take_any_way(_: Float[Array, "4 4"]) -> bool:
     """Take every way for free."""
     return True
 
