@@ -9,6 +9,7 @@ from grounding.relations.catalogue import measure
 from grounding.relations.committee import Committee, fit
 from grounding.relations.evidence import Evidence, Settings
 from grounding.relations.situation import Situations
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY
 from tamp.geometric.scene.pose import Array
 
 OPEN = Settings(idle=0.0, contact=0.0, temper=3.0)
@@ -19,7 +20,7 @@ votes, an answer tells most.
 
 def dispute(committee: Committee, situations: Situations) -> Array:
     """Return how much the members of a committee dispute each situation, 0 to 1, (n,)."""
-    votes = committee.votes(committee.centred(measure(situations))) >= 0.5
+    votes = committee.votes(committee.centred(measure(situations))) >= LIKELY_PROBABILITY
     yes = votes @ committee.weights
     return 4.0 * yes * (1.0 - yes)
 

@@ -23,6 +23,7 @@ from grounding.relations.scenes import examples_of
 from grounding.relations.situation import Situations, joined, situation_of
 from grounding.relations.variety import missing, unvaried
 from tamp.errors import InputError
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY
 
 YES, NO, SKIP, QUIT = ("y", "yes"), ("n", "no"), ("s", "skip", ""), ("q", "quit")
 
@@ -81,7 +82,10 @@ def explore_own(name: str, demos: Path, out: Path | None, count: int, seed: int)
     state = _State.of(name.lower(), demos, rng)
     found = candidates(state.relation, examples_of(state.shown), count, rng)
     for number, one in enumerate(found, 1):
-        path, holds = folder / f"{state.name}_{number:03d}.yaml", one.probability >= 0.5
+        path, holds = (
+            folder / f"{state.name}_{number:03d}.yaml",
+            one.probability >= LIKELY_PROBABILITY,
+        )
         note = f"{'Yes' if holds else 'No'}, says the classifier ({one.probability:.2f}). Right?"
         _write(path, one, state.name, holds, note)
         write_picture(path.with_suffix(".png"), one.bodies, one.arguments, state.name)

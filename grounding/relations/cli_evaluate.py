@@ -16,6 +16,7 @@ from grounding.relations.picture import write_picture
 from grounding.relations.scenes import read_examples
 from grounding.weights import read_weights
 from tamp.errors import InputError
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY
 
 PICTURES = 12
 """Pictures that are written, at most."""
@@ -56,7 +57,10 @@ def evaluate_own(
     found = candidates(relation, examples, scenes, np.random.default_rng(seed), near=0.0)
     for key, held in (
         ("stays in physics", [one.stayed for one in found]),
-        ("holds where it lies, says the classifier", [one.probability >= 0.5 for one in found]),
+        (
+            "holds where it lies, says the classifier",
+            [one.probability >= LIKELY_PROBABILITY for one in found],
+        ),
     ):
         if key.startswith("holds") and why is not None:
             continue
@@ -74,7 +78,9 @@ def evaluate_own(
 
 def _judged(relation: LearnedRelation, shown: list[Demonstration]) -> dict[str, object]:
     """Ask the classifier of demonstrations that it was not shown."""
-    said = np.array([relation.classify(one.scene, one.arguments) >= 0.5 for one in shown])
+    said = np.array(
+        [relation.classify(one.scene, one.arguments) >= LIKELY_PROBABILITY for one in shown]
+    )
     holds = np.array([one.holds for one in shown])
     figures: dict[str, object] = {}
     for key, rows, right in (("what holds", holds, said), ("what does not", ~holds, ~said)):

@@ -17,6 +17,7 @@ from grounding.relations.generator import Generator, learned
 from grounding.relations.situation import Situations, joined, situation_of
 from grounding.relations.variety import contradiction
 from tamp.errors import InputError
+from tamp.geometric.scene.classifier import LIKELY_PROBABILITY
 
 FOLDS = 10
 """Parts into which scenes are dealt for cross-validation, at most."""
@@ -161,7 +162,7 @@ def cross_validated(
         if len(good) < 2:
             return None
         evidence = gather(situations.rows(good), situations.rows(bad), rng)
-        said[test] = fit(evidence).predict(situations.rows(test)) >= 0.5
+        said[test] = fit(evidence).predict(situations.rows(test)) >= LIKELY_PROBABILITY
 
     wrong = tuple(np.flatnonzero(said != holds).tolist())
     return HeldOut(float(said[holds].mean()), float((~said[~holds]).mean()), wrong, folds)
