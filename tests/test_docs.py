@@ -11,28 +11,42 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("docs/*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 MAP = ROOT / "docs" / "how-it-works.md"
+README = ROOT / "README.md"
 PATHS = re.compile(
     r"(?<![\w/.-])((?:tamp|grounding|tests|benchmarks|examples|domains|problems|docs)/[\w./-]*\w/?)(?![\w*<>{}])"
 )
 
 
-def rows(heading: str) -> list[tuple[str, str, str]]:
-    """The rows of the first table under a heading of the map."""
-    text = MAP.read_text(encoding="utf-8").partition(f"{heading}\n")[2]
-    parts = (part.strip() for part in text.split("\n\n"))
-    table = next(part for part in parts if part.startswith("| "))
-    cells = [line.strip("| ").split(" | ") for line in table.splitlines()[2:]]
-    return [(row[0], row[1], row[2]) for row in cells]
+def rows(page: Path, heading: str, until: str) -> list[tuple[str, str, str]]:
+    """The rows of all tables between two headings of a page (`until` without its words)."""
+    text = page.read_text(encoding="utf-8").partition(f"\n{heading}\n")[2]
+    text = text.partition(f"\n{until} ")[0]
+
+    found: list[tuple[str, str, str]] = []
+    for part in text.split("\n\n"):
+        lines = part.strip().splitlines()
+        if lines and lines[0].startswith("| "):
+            cells = [line.strip("| ").split(" | ") for line in lines[2:]]
+            found.extend((row[0], row[1], row[2]) for row in cells)
+    return found
 
 
 def named(cell: str) -> list[str]:
     return re.findall(r"`([^`]+)`", cell)
 
 
-FOLDERS = [(named(folder)[0], named(files)) for _, folder, files in rows("## The map")]
+FOLDERS = [(named(folder)[0], named(files)) for _, folder, files in rows(MAP, "## The map", "###")]
 DECISIONS = [
     (question, named(file)[0], named(name)[0])
-    for question, file, name in rows("### Where is it decided?")
+    for question, file, name in [
+        *rows(MAP, "### Where is it decided?", "##"),
+        *rows(README, "## Where is it in the code?", "##"),
+    ]
+]
+ASIDES = [
+    (question, file, name)
+    for question, _, _ in DECISIONS
+    for name, file in re.findall(r"`(\w+)` in `((?:tamp|grounding)/[\w/]+\.py)`", question)
 ]
 
 
@@ -62,7 +76,9 @@ def test_every_folder_says_in_one_line_what_it_is_for(folder: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("question", "file", "name"), DECISIONS, ids=[name for _, _, name in DECISIONS]
+    ("question", "file", "name"),
+    [*DECISIONS, *ASIDES],
+    ids=[name for _, _, name in [*DECISIONS, *ASIDES]],
 )
 def test_what_decides_is_where_the_map_says(question: str, file: str, name: str) -> None:
     tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
@@ -75,6 +91,14 @@ def test_what_decides_is_where_the_map_says(question: str, file: str, name: str)
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
         defined |= {target.id for target in targets if isinstance(target, ast.Name)}
     assert name in defined, f"{question}: {file} defines no {name}"
+
+
+def test_every_table_of_decisions_is_read() -> None:
+    """The tables lie under headings of their own: a reader of the first one alone would miss the others."""
+    files = {file.split("/")[1] for _, file, _ in DECISIONS if file.startswith("tamp/")}
+    assert {"commands", "geometric", "symbolic", "verification", "execution", "view"} <= files
+    assert len(DECISIONS) > 100
+    assert len(ASIDES) > 5
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
