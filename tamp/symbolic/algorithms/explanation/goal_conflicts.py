@@ -42,14 +42,20 @@ def minimal_unsolvable_goals(
         instantiate: Instantiates the task with another goal.
     """
     found = excluded(instantiated, deadline)
-    if found is not None and any(_is_odd(fact, instantiated) for fact, _ in found):
+    if found is not None:
+        odd = any(_has_placeholder(fact) or fact[0] in instantiated.meanings for fact, _ in found)
+    else:
+        found = _searched(instantiated, deadline)
+        odd = any(_has_placeholder(fact) for fact, _ in found)
+
+    # nobody wrote the goal so: an auxiliary fact, or one about a placeholder
+    if odd:
         return _conjuncts(goal, instantiate, deadline) or _meanings(instantiated, found)
-    return _meanings(instantiated, found or _searched(instantiated, deadline))
+    return _meanings(instantiated, found)
 
 
-def _is_odd(fact: Fact, instantiated: InstantiatedTask) -> bool:
-    """Check that nobody wrote it so: an auxiliary fact, or one about a placeholder."""
-    return fact[0] in instantiated.meanings or any(word.startswith(MARK) for word in fact)
+def _has_placeholder(fact: Fact) -> bool:
+    return any(word.startswith(MARK) for word in fact)
 
 
 def _conjuncts(

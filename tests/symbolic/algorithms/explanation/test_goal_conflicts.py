@@ -96,3 +96,15 @@ def test_the_reference_algorithm_names_them_too(tmp_path: Path) -> None:
 def test_what_can_be_had_together_is_planned(goal: str, tmp_path: Path) -> None:
     solution, _ = solved(goal, 4, tmp_path)
     assert solution.outcome is Outcome.SOLVED
+
+
+def test_a_body_that_may_be_nowhere_is_told_in_the_goal_s_words(tmp_path: Path) -> None:
+    """The search that proves it is over poses that only exist in its mind: none of them is named."""
+    nowhere = ["(on b0 table)", "(on b0 desk)", "(on b0 cupboard_top)"]
+    nowhere += ["(inside b0 cupboard_1)", "(inside b0 cupboard_2)"]
+    denied = [f"(not {place})" for place in nowhere]
+    solution, _ = solved(f"(and {' '.join(denied)} (hand-empty))", 1, tmp_path)
+
+    assert solution.outcome is Outcome.INFEASIBLE
+    assert all(words in solution.explanation[0] for words in (*denied, "(hand-empty)"))
+    assert "#" not in solution.explanation[0]
