@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from benchmarks import module_index
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("docs/*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"])
 MAP = ROOT / "docs" / "how-it-works.md"
@@ -91,6 +93,13 @@ def test_what_decides_is_where_the_map_says(question: str, file: str, name: str)
         targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
         defined |= {target.id for target in targets if isinstance(target, ast.Name)}
     assert name in defined, f"{question}: {file} defines no {name}"
+
+
+def test_the_page_of_modules_is_that_of_the_code() -> None:
+    written = module_index.PAGE.read_text(encoding="utf-8")
+    assert written == module_index.index(), "python -m benchmarks.module_index writes it"
+    assert written.count("\n| `") > 500
+    assert "`verify.py`" in written and "`LIKELY_PROBABILITY`" in written
 
 
 def test_every_table_of_decisions_is_read() -> None:

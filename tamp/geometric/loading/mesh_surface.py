@@ -1,4 +1,4 @@
-"""A mesh file's triangles, checked, and repaired where they leave holes."""
+"""A mesh file's triangles, checked (watertight, none degenerate), and repaired where holes are."""
 
 from __future__ import annotations
 
