@@ -13,7 +13,7 @@ from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import CHOICE, RESIDUAL, TRIES, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
-from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_options import TrainerOptions
 from grounding.weights import Weights
 from tamp.errors import InputError
 
@@ -78,7 +78,7 @@ def train(
     _check(data, model, scheme, sizes, seeds, encoder, departures)
     residual = _clouds(model) or "residual-turn" in departures
     table = table or features_of(data, model, encoder, progress, max(sizes), residual)
-    args = Args(
+    args = TrainerOptions(
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,

@@ -17,7 +17,7 @@ from tamp.geometric.loading.bodies import PLACEMENT_KEYS
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.meshes import find_mesh
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.pose import Pose
 from tamp.system.outputs import write_whole
 
@@ -114,7 +114,7 @@ def read_entries(path: Path) -> dict[str, BodyEntry]:
     }
 
 
-def _shape(node: Node, folder: Path) -> dict[str, Any]:
+def _shape(node: YamlNode, folder: Path) -> dict[str, Any]:
     entries = {
         key: _plain(value) for key, value in node.mapping().items() if key not in PLACEMENT_KEYS
     }
@@ -123,7 +123,7 @@ def _shape(node: Node, folder: Path) -> dict[str, Any]:
     return entries
 
 
-def _plain(node: Node) -> Any:
+def _plain(node: YamlNode) -> Any:
     """Return words, lists and mappings as they are written."""
     if node.is_list():
         return [_plain(item) for item in node.items()]

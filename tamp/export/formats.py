@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tamp.export.trajectory import Stretch, TimedAction, joints_of
+from tamp.export.trajectory import ExportedAction, Stretch, joints_of
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import PlanFile
@@ -21,7 +21,7 @@ DIGITS = 9
 NANOSECONDS = 10**9
 
 
-def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def json_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format the actions with their stretches as JSON, times from the plan's start."""
     document = {
         "format": "tamp-trajectory",
@@ -43,7 +43,7 @@ def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> s
     return json.dumps(document) + "\n"
 
 
-def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format the trajectory as CSV, one row a sample with all joints, those that stand still too;
     the columns of velocities begin with v_.
     """
@@ -80,7 +80,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     return file.getvalue()
 
 
-def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which
     they are to be sent.
 
@@ -111,7 +111,7 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     )
 
 
-FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
+FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[ExportedAction]], str]] = {
     "json": json_text,
     "csv": csv_text,
     "ros": ros_text,

@@ -18,7 +18,7 @@ from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.user_relations import fails_relation
 from tamp.planner.served import Served
-from tamp.relations.observed import Observation, moved, observe, refuse_silent
+from tamp.relations.observed import ClassifierAnswers, moved, observe, refuse_silent
 from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.complement import atoms_of_conditions, complement_name, with_complements
@@ -159,7 +159,7 @@ def _observed(
     objects: Mapping[str, tuple[str, ...]],
     facts: Collection[Fact],
     context: Context,
-) -> Observation:
+) -> ClassifierAnswers:
     at = {fact[1]: fact[2] for fact in facts if fact[0] in (POSE, "at-pose") and len(fact) == 3}
     held = context.holding
     scene = moved(context.scene, {}, () if held is None else (held.body,))
@@ -198,7 +198,7 @@ def _check_poses(relation: Relation, domain: Domain) -> None:
         )
 
 
-def _odd(relation: Relation, seen: Observation) -> list[str]:
+def _odd(relation: Relation, seen: ClassifierAnswers) -> list[str]:
     """Warn of a classifier that failed, or that ignores the place that it is asked about."""
     found: list[str] = []
     for words, why in list(seen.unanswered.items())[:MOST]:

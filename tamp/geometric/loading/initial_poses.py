@@ -11,7 +11,7 @@ import numpy as np
 from tamp.geometric.loading.bodies import UnplacedBody
 from tamp.geometric.loading.orientation import read_orientation, read_pose
 from tamp.geometric.loading.tops import top_of
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body
@@ -146,7 +146,7 @@ class _InitialPoses:
             )
         return replace(draft.body, pose=pose, support=place.name)
 
-    def support(self, node: Node, above: tuple[str, ...]) -> _Place:
+    def support(self, node: YamlNode, above: tuple[str, ...]) -> _Place:
         """Find the surface, the cavity, the carrying body or the floor that `on:` names."""
         name = node.text()
         if name == FLOOR_NAME and name not in self.owners and name not in self.drafts:
@@ -173,12 +173,12 @@ class _InitialPoses:
         supports = sorted({*self.owners, *self.drafts, FLOOR_NAME} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=supports)
 
-    def check_level(self, body: Body, node: Node) -> None:
+    def check_level(self, body: Body, node: YamlNode) -> None:
         for place in (*body.surfaces, *body.cavities):
             if (body.pose @ place.pose).rotation[2, 2] < _UPRIGHT_COSINE and not body.movable:
                 raise node.error(f"'{place.name}' is not horizontal, nothing can stand on it")
 
-    def with_inferred_support(self, body: Body, node: Node) -> Body:
+    def with_inferred_support(self, body: Body, node: YamlNode) -> Body:
         """Settle a movable body given by its pose: snap it to what is within 2 mm below it."""
         low, high = bounds(body.parts, body.pose)
         if low[2] < -_SNAP_DISTANCE_M:

@@ -24,7 +24,7 @@ SEAM_WIDTH_M = 5e-4
 
 
 @dataclass(frozen=True)
-class Contact:
+class Crossing:
     """The crossing of a line with a solid: from `start` to `end` metres along it, with the outward
     normals (3,) there.
     """
@@ -101,14 +101,16 @@ class ConvexUnion:
         """Return outward normals (..., 3) of planes."""
         return self._normals[planes]
 
-    def solid_at(self, origin: Float[Array, " 3"], direction: Float[Array, " 3"]) -> Contact | None:
+    def solid_at(
+        self, origin: Float[Array, " 3"], direction: Float[Array, " 3"]
+    ) -> Crossing | None:
         """Find the stretch of solid that contains, or begins at, the origin of a line; None where
         there is none.
         """
         found, start, end, first, last = stretch(
             origin, direction, self._normals, self._offsets, self._first, SEAM_WIDTH_M
         )
-        return Contact(start, end, self._normals[first], self._normals[last]) if found else None
+        return Crossing(start, end, self._normals[first], self._normals[last]) if found else None
 
 
 @once_a_shape

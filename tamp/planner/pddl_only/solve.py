@@ -16,7 +16,14 @@ from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
-from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
+from tamp.symbolic.search.search import (
+    SEARCHES,
+    Plan,
+    Reason,
+    SearchResult,
+    search,
+    split_heuristics,
+)
 from tamp.system.deadline import Deadline, OutOfTime, counted
 from tamp.system.garbage import infrequent_collection
 from tamp.system.interrupts import Interrupter
@@ -185,7 +192,7 @@ def _solve(
             break
         refuted.append(reason)
     else:
-        found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
+        found = SearchResult(None, Reason.LIMIT, found.expanded, found.evaluated)
 
     done = counted()
     outcome = (
@@ -214,8 +221,8 @@ def _solve(
 
 
 def _shortened(
-    task: Task, instantiated: InstantiatedTask, found: Result, deadline: Deadline
-) -> Result:
+    task: Task, instantiated: InstantiatedTask, found: SearchResult, deadline: Deadline
+) -> SearchResult:
     """Look for a cheaper plan than greedy search's, as long as that is quickly done.
 
     Windows of a plan cannot be cut where each step enables the next; another search finds a plan of
@@ -254,7 +261,7 @@ def _shortened(
     return found
 
 
-def _worthwhile_states(instantiated: InstantiatedTask, found: Result) -> int:
+def _worthwhile_states(instantiated: InstantiatedTask, found: SearchResult) -> int:
     """Return how many states a search for a cheaper plan is worth, whatever that costs."""
     entries = max(1, sum(1 + len(operator.positive) for operator in instantiated.operators))
     limit = SHORTENING // entries
