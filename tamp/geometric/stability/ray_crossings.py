@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.ray_kernels import cross_all, stretch
 from tamp.geometric.stability.shapes import once_a_shape
 

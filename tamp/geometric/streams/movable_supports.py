@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.context import Context
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.outline import outline
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Cavity, Surface
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.placement import (
     BALANCE_MARGIN_M,
     Placement,
