@@ -18,7 +18,6 @@ from grounding.paper.features import (
 from grounding.paper.kernels import normalize
 from grounding.paper.numpy_networks import (
     NOISE,
-    REMEDY,
     Arrays,
     Floats,
     Network,
@@ -27,7 +26,7 @@ from grounding.paper.numpy_networks import (
     read_layers,
 )
 from grounding.relation_scene import RelationScene
-from grounding.weights import Weights
+from grounding.weights import REMEDY, Weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
 

@@ -14,6 +14,7 @@ from typing import Any
 from grounding.relations.demonstration_file import Label
 from tamp.errors import InputError
 from tamp.geometric.loading.bodies import PLACEMENT_KEYS
+from tamp.geometric.loading.declared_places import NAME
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.meshes import find_mesh
 from tamp.geometric.loading.yaml_file import read_yaml
@@ -25,9 +26,6 @@ ROBOT = "{model: panda_mobile, base: [0.0, 0.0, 0 deg]}"
 """Any robot, so that a demonstration is a whole problem file; no relation depends on it."""
 
 ROOM = "{x: [-5.0, 5.0], y: [-5.0, 5.0]}"
-
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-"""What a problem file takes for a name."""
 
 PLAIN = re.compile(r"[A-Za-z_./][A-Za-z0-9_./-]*")
 """Words that need no quotes in YAML, but for those that YAML reads otherwise."""

@@ -14,9 +14,7 @@ from tamp.export.trajectory import ExportedAction, Stretch, joints_of
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import PlanFile
-
-DIGITS = 9
-"""Decimals of the numbers: those of the plan file."""
+from tamp.plan.sources import DECIMALS
 
 NANOSECONDS = 10**9
 
@@ -68,7 +66,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) ->
                 holding = stretch.holding or ""
                 writer.writerow(
                     (
-                        round(float(time), DIGITS),
+                        round(float(time), DECIMALS),
                         number,
                         action.name,
                         stretch.part,
@@ -93,7 +91,7 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) ->
             "name": action.name,
             "arguments": action.arguments,
             "controller": stretch.part,
-            "start": round(float(stretch.times[0]), DIGITS),
+            "start": round(float(stretch.times[0]), DECIMALS),
             "holding": stretch.holding,
             "attach": stretch.attach,
             "detach": stretch.detach,
@@ -183,4 +181,4 @@ def _message(stretch: Stretch) -> dict[str, Any]:
 
 
 def _rounded(row: Array) -> list[float]:
-    return [round(float(number), DIGITS) + 0.0 for number in row]
+    return [round(float(number), DECIMALS) + 0.0 for number in row]

@@ -14,7 +14,7 @@ from tamp.symbolic.algorithms.result import Result
 from tamp.symbolic.pddl.relations import Relation
 from tamp.symbolic.pddl.structs import Action, And, Domain, Fact
 
-MOST = 3
+MAX_CONTRADICTIONS_TOLD = 3
 """Contradictions that are told."""
 
 
@@ -53,7 +53,7 @@ def contradictions(problem: Problem, result: Result) -> tuple[Cause, ...]:
                 objects = problem.stream_task.named(words)
                 found.append(Cause(text, CauseKind.CONTRADICTED, objects))
 
-    return distinct_causes(found)[:MOST]
+    return distinct_causes(found)[:MAX_CONTRADICTIONS_TOLD]
 
 
 def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_StandingPoses]:

@@ -32,12 +32,12 @@ from tamp.symbolic.pddl.relations import (
 )
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 
-REMEDY = (
+CLASSIFIER_REMEDY = (
     "Give it a classifier: --sampler {0}=FILE.py with classify, "
     "or weights of 100 labels, some of them negative"
 )
 
-MOST = 3
+MAX_ARGUMENTS_TOLD = 3
 """Arguments that a warning about a classifier names."""
 
 
@@ -182,7 +182,7 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
         file=place.file if place else None,
         line=place.line if place else None,
         column=place.column if place else None,
-        remedy=REMEDY.format(name),
+        remedy=CLASSIFIER_REMEDY.format(name),
     )
 
 
@@ -201,7 +201,7 @@ def _check_poses(relation: Relation, domain: Domain) -> None:
 def _odd(relation: Relation, seen: ClassifierAnswers) -> list[str]:
     """Warn of a classifier that failed, or that ignores the place that it is asked about."""
     found: list[str] = []
-    for words, why in list(seen.unanswered.items())[:MOST]:
+    for words, why in list(seen.unanswered.items())[:MAX_ARGUMENTS_TOLD]:
         said = " ".join((relation.name, *words))
         found.append(
             f"whether ({said}) holds at the start is not known: "

@@ -50,7 +50,7 @@ MAX_PARTS_LOOKED_AT = 8_000
 """Parts looked at for all bodies together: only in a crowd that lies in itself are there more."""
 
 FLOOR_NAME = "floor"
-"""What the floor is called among bodies."""
+"""What the floor at z = 0 is called among bodies, and by `on:`; it is no surface of the scene."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import derive, supports
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
-from tamp.symbolic.search.operators import NONE, Facts, Guard, InstantiatedTask, Operator
+from tamp.symbolic.search.operators import NO_FACTS, Facts, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +37,13 @@ class TracedStep:
     operator: Operator
     state: Facts
     static: Facts
-    derived: Facts = NONE
-    read: Facts = NONE
-    heads: Facts = NONE
-    added: Facts = NONE
-    deleted: Facts = NONE
+    derived: Facts = NO_FACTS
+    read: Facts = NO_FACTS
+    heads: Facts = NO_FACTS
+    added: Facts = NO_FACTS
+    deleted: Facts = NO_FACTS
     guards: tuple[Guard, ...] = ()
-    unguarded: Facts = NONE
+    unguarded: Facts = NO_FACTS
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from tamp.symbolic.search.instantiation.datalog import Row, RuleBody, filler, ge
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
-from tamp.symbolic.search.operators import NONE, ConditionalEffect, Facts
+from tamp.symbolic.search.operators import NO_FACTS, ConditionalEffect, Facts
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ class EffectTemplates:
                     continue
                 changes = conditional.setdefault((positive, negative, static), ([], []))
                 changes[0 if adds else 1].append(fact)
-        unconditional = conditional.pop((NONE, NONE, NONE), None)
+        unconditional = conditional.pop((NO_FACTS, NO_FACTS, NO_FACTS), None)
         if unconditional:
             added += unconditional[0]
             deleted += unconditional[1]
