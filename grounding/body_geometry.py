@@ -8,10 +8,11 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scaling import scale_part
 from tamp.geometric.scene.scene import Body, Part
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.stable_poses import Face, stable_faces
 
 DIRECTIONS = 128

@@ -19,7 +19,7 @@ from grounding.dataset import Dataset, write_dataset
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS, object_templates
 from grounding.scenes import OTHERS, LabelledScene
-from grounding.supports import Support
+from grounding.supports import FurnitureSupport
 from tamp.errors import InputError
 from tamp.system import guard
 from tamp.system.files import write_whole
@@ -40,7 +40,7 @@ Progress = Callable[[int, int], None]
 """Called with the scenes made so far and all."""
 
 
-class Job(Protocol):
+class ChunkJob(Protocol):
     """The specification of what is to be made; a process gets it as a whole, so it must be one that
     can be sent there.
     """
@@ -71,7 +71,7 @@ class Job(Protocol):
         ...
 
     @property
-    def supports(self) -> Mapping[str, Support]:
+    def supports(self) -> Mapping[str, FurnitureSupport]:
         """Return the pieces of furniture by name."""
         ...
 
@@ -101,7 +101,7 @@ class Job(Protocol):
 
 
 def make_dataset(
-    job: Job,
+    job: ChunkJob,
     out: Path,
     workers: int | None = None,
     progress: Progress = lambda done, total: None,
@@ -147,7 +147,7 @@ def make_dataset(
     return data
 
 
-def _size(job: Job, number: int) -> int:
+def _size(job: ChunkJob, number: int) -> int:
     """Return the number of scenes of a chunk; the last one may be smaller."""
     return min(CHUNK, job.count - number * CHUNK)
 
@@ -167,7 +167,7 @@ def _claim(parts: Path, name: str) -> None:
 
 
 def _results(
-    job: Job, waiting: list[int], workers: int | None, ray: str | None
+    job: ChunkJob, waiting: list[int], workers: int | None, ray: str | None
 ) -> Iterator[tuple[int, bytes]]:
     if ray is not None:
         from grounding.ray_chunks import ray_results
@@ -188,7 +188,7 @@ def _results(
         count, mp_context=get_context("spawn"), initializer=guard.obey_only_parent
     )
     try:
-        with guard.Held():
+        with guard.HeldSignals():
             futures = {pool.submit(_packed, job, number): number for number in waiting}
         while futures:
             if guard.asked():  # what it raised was dropped
@@ -204,7 +204,7 @@ def _results(
         raise
 
 
-def _packed(job: Job, number: int) -> bytes:
+def _packed(job: ChunkJob, number: int) -> bytes:
     """Make the scenes of one chunk, and serialize them as the bytes of an npz."""
     objects = object_templates(job.split, job.folder)
     names = {name: row for row, name in enumerate([*job.supports, *objects])}
@@ -241,7 +241,7 @@ def _arrays(
     return arrays
 
 
-def _merged(job: Job, files: Sequence[Path]) -> Dataset:
+def _merged(job: ChunkJob, files: Sequence[Path]) -> Dataset:
     loaded = []
     for file in files:
         with np.load(file, allow_pickle=False) as archive:

@@ -52,7 +52,7 @@ SHOWN = 5
 """Contradicting pairs of rows that are named."""
 
 
-class Report(Protocol):
+class ReportProgress(Protocol):
     """Says how far the work is; the last time that it is done."""
 
     def __call__(self, text: str, *, last: bool = False) -> None:
@@ -98,7 +98,7 @@ def run(shown: Progress, arguments: list[str]) -> int:
     return DONE
 
 
-def _generate(chosen: Generate, show: Report) -> None:
+def _generate(chosen: Generate, show: ReportProgress) -> None:
     from grounding.generate import Job, generate
 
     out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout)
@@ -117,7 +117,7 @@ def _generate(chosen: Generate, show: Report) -> None:
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _explore(chosen: Explore, show: Report) -> None:
+def _explore(chosen: Explore, show: ReportProgress) -> None:
     if chosen.demos is not None:
         from grounding.relations.cli_ask import explore_own
 
@@ -152,16 +152,16 @@ def _collect(chosen: Collect) -> None:
     print(f"{out} written: {len(data):,} scenes, {data.card['by type']}")
 
 
-def _encoder(chosen: Encoder, show: Report) -> None:
+def _encoder(chosen: Encoder, show: ReportProgress) -> None:
     out = chosen.out or encoder_file(chosen.relation)
     check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
     data = read_data(chosen.data, chosen.relation, "train")
     try:
-        from grounding.paper.encoders import Args, train_encoder
+        from grounding.paper.encoders import EncoderOptions, train_encoder
     except ImportError as error:
         raise _missing(error) from None
 
-    args = Args(seed=chosen.seed)
+    args = EncoderOptions(seed=chosen.seed)
     args = replace(
         args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
     )
@@ -181,7 +181,7 @@ def _encoder(chosen: Encoder, show: Report) -> None:
     print(f"{out} written, validation Chamfer distance {score:.3e}")
 
 
-def _train(chosen: Train, show: Report) -> None:
+def _train(chosen: Train, show: ReportProgress) -> None:
     from grounding.train import OPTIONS, TrainArgs, check, train
 
     out = chosen.out or Path("weights") / f"{chosen.relation}_{chosen.model}.safetensors"
@@ -226,7 +226,7 @@ def _train(chosen: Train, show: Report) -> None:
     print(f"{out} written. Judge it: tamp-learn evaluate {out}")
 
 
-def _evaluate(chosen: Evaluate, show: Report) -> None:
+def _evaluate(chosen: Evaluate, show: ReportProgress) -> None:
     from grounding.evaluate import evaluate, wilson
     from grounding.registry import is_few_shot, load_model, shipped_model
     from grounding.weights import read_weights

@@ -16,7 +16,7 @@ from grounding.random_poses import afloat, on_ground, random_rest, random_turn
 from grounding.scenes import (
     LabelledScene,
     SampledScene,
-    Scenes,
+    SceneSampler,
     free,
     resting,
     some_hold_in_physics,
@@ -76,7 +76,7 @@ class DemonstrationGenerator:
     def __init__(
         self, relation: str, split: str, drops: Drops, folder: MeshFolder | None = None
     ) -> None:
-        self._split, self._drops, self._scenes = split, drops, Scenes(relation, split, folder)
+        self._split, self._drops, self._scenes = split, drops, SceneSampler(relation, split, folder)
 
     def make(self, kind: str, rng: Random) -> LabelledScene:
         """Sample a scene of this kind; tries until one is found."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from grounding.dataset import Dataset, Example
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.oracles import NEAR, ItemOf, Verdict, drop_verdicts, paper_verdicts
 from grounding.paper.blind import blind_ceiling
 from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
@@ -62,7 +62,7 @@ class Evaluation:
 
 
 def evaluate(
-    model: Model,
+    model: RelationModel,
     data: Dataset,
     scenes: int | None = None,
     seed: int = 0,
@@ -133,7 +133,9 @@ def evaluate(
     )
 
 
-def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int = 0) -> float | None:
+def accuracy(
+    model: RelationModel, data: Dataset, scenes: int | None = None, seed: int = 0
+) -> float | None:
     """Return the share of scenes that the classifier is right about, at their own poses; None when
     there is no classifier.
 
@@ -152,7 +154,7 @@ def accuracy(model: Model, data: Dataset, scenes: int | None = None, seed: int =
     return _share(right)
 
 
-def _right(model: Model, example: Example) -> bool | None:
+def _right(model: RelationModel, example: Example) -> bool | None:
     """Check whether the classifier is right about an example; None when there is no classifier."""
     own = float(model.classify(example.situation, example.situation.body.matrix[None])[0])
     return None if math.isnan(own) else (own > 0.5) == example.holds

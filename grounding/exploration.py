@@ -25,12 +25,12 @@ from numpy.typing import NDArray
 from grounding.chunks import RELATIONS, Progress, make_dataset
 from grounding.dataset import Dataset
 from grounding.mesh_folder import MeshFolder
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.oracles import Verdict, drop_verdicts
 from grounding.random_poses import random_turn
 from grounding.registry import load_model
-from grounding.scenes import LabelledScene, SampledScene, Scenes, free
-from grounding.supports import Support, household_supports
+from grounding.scenes import LabelledScene, SampledScene, SceneSampler, free
+from grounding.supports import FurnitureSupport, household_supports
 from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import BOX_GROWTH_SHARE
@@ -70,7 +70,7 @@ SECONDS = 2.5
 
 @dataclass(frozen=True)
 class Exploration:
-    """The specification of an exploration; a `grounding.chunks.Job`.
+    """The specification of an exploration; a `grounding.chunks.ChunkJob`.
 
     Attributes:
         relation: "on" or "inside".
@@ -92,7 +92,7 @@ class Exploration:
         return "train"
 
     @property
-    def supports(self) -> Mapping[str, Support]:
+    def supports(self) -> Mapping[str, FurnitureSupport]:
         """Return the pieces of furniture by name, those of the relation first."""
         return household_supports(self.relation, self.split)
 
@@ -151,7 +151,9 @@ class Explorer:
         model: What draws half of the poses; None for random ones alone.
     """
 
-    def __init__(self, scenes: Scenes, drops: Drops, model: Model | None = None) -> None:
+    def __init__(
+        self, scenes: SceneSampler, drops: Drops, model: RelationModel | None = None
+    ) -> None:
         self._scenes, self._drops, self._model = scenes, drops, model
 
     def make(self, holds: bool, rng: Random) -> LabelledScene:
@@ -285,4 +287,4 @@ def moved(pose: Array, rng: Random) -> Array:
 @lru_cache(maxsize=2)
 def _explorer(relation: str, weights: Path | None, folder: MeshFolder | None) -> Explorer:
     model = None if weights is None else load_model(weights)
-    return Explorer(Scenes(relation, "train", folder), open_drops(), model)
+    return Explorer(SceneSampler(relation, "train", folder), open_drops(), model)

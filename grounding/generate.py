@@ -22,7 +22,7 @@ from grounding.objects import SPLITS
 from grounding.paper.demonstrations import PaperDemonstrations
 from grounding.paper.scenes import paper_supports
 from grounding.scenes import LabelledScene
-from grounding.supports import Support, household_supports
+from grounding.supports import FurnitureSupport, household_supports
 from tamp.errors import InputError
 from tamp.simulation.engines import open_drops
 
@@ -32,7 +32,7 @@ LAYOUTS = {"household": DemonstrationGenerator, "paper": PaperDemonstrations}
 
 @dataclass(frozen=True)
 class Job:
-    """The specification of scenes to generate; a `grounding.chunks.Job`.
+    """The specification of scenes to generate; a `grounding.chunks.ChunkJob`.
 
     Attributes:
         relation: "on" or "inside".
@@ -62,7 +62,7 @@ class Job:
         return json.dumps(parts if self.layout == "household" else [*parts, self.layout])
 
     @property
-    def supports(self) -> Mapping[str, Support]:
+    def supports(self) -> Mapping[str, FurnitureSupport]:
         """Return the pieces of furniture by name, those of the relation first."""
         if self.layout == "paper":
             return paper_supports(self.relation, self.split)

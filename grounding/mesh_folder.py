@@ -48,7 +48,7 @@ class MeshFolder:
 
 
 @dataclass(frozen=True, eq=False)
-class Loaded:
+class MeshObjects:
     """The objects of a mesh folder.
 
     Attributes:
@@ -61,7 +61,7 @@ class Loaded:
 
 
 @lru_cache(maxsize=4)
-def read_folder(folder: MeshFolder) -> Loaded:
+def read_folder(folder: MeshFolder) -> MeshObjects:
     """Read one object for each subfolder, named after it, of its first mesh at any depth; and for
     each mesh beside them.
 
@@ -96,7 +96,7 @@ def read_folder(folder: MeshFolder) -> Loaded:
 
     if not found:
         raise InputError(f"none of its meshes can be used: {warnings[-1]}", file=folder.path)
-    return Loaded(found, tuple(warnings))
+    return MeshObjects(found, tuple(warnings))
 
 
 def unusable(parts: tuple[Part, ...]) -> str | None:

@@ -10,7 +10,7 @@ from grounding.relation_scene import RelationScene
 from tamp.geometric.scene.pose import Array
 
 
-class Model(Protocol):
+class RelationModel(Protocol):
     """A generator and a classifier over situations. Poses are T_world_body of the body, shape (n,
     4, 4).
     """

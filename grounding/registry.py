@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grounding.certainty import cannot_tell
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.runtime import Grounding, Proposer
 from grounding.weights import Weights, read_weights
 from tamp.errors import InputError
@@ -25,37 +25,37 @@ SHIPPED = Path(__file__).resolve().parent / "assets"
 """Where the shipped weights are."""
 
 
-def _relational(weights: Weights) -> Model:
+def _relational(weights: Weights) -> RelationModel:
     from grounding.relational.model import RelationalModel
 
     return RelationalModel(weights)
 
 
-def _paper(weights: Weights) -> Model:
+def _paper(weights: Weights) -> RelationModel:
     from grounding.paper.runtime import PaperModel
 
     return PaperModel(weights)
 
 
-def _tree(weights: Weights) -> Model:
+def _tree(weights: Weights) -> RelationModel:
     from grounding.paper.trees import TreeModel
 
     return TreeModel(weights)
 
 
-def _uniform(weights: Weights | None = None) -> Model:
+def _uniform(weights: Weights | None = None) -> RelationModel:
     from grounding.paper.uniform import UniformModel
 
     return UniformModel(weights)
 
 
-def _surface() -> Model:
+def _surface() -> RelationModel:
     from grounding.surface import SurfaceModel
 
     return SurfaceModel()
 
 
-MODELS: Mapping[str, Callable[[Weights], Model]] = {
+MODELS: Mapping[str, Callable[[Weights], RelationModel]] = {
     "transfer": _relational,
     "flow": _relational,
     "mlp-bb": _paper,
@@ -79,7 +79,10 @@ TRAINING_VARIANTS: Mapping[str, str] = {
 }
 """Name of what ships of one training scheme, of the household layout, to the model that it is."""
 
-PARAMETER_FREE: Mapping[str, Callable[[], Model]] = {"surface": _surface, "uniform": _uniform}
+PARAMETER_FREE: Mapping[str, Callable[[], RelationModel]] = {
+    "surface": _surface,
+    "uniform": _uniform,
+}
 """Model name to what makes it of nothing."""
 
 FEW_SHOT = "conjunctions"
@@ -92,7 +95,7 @@ LEARNED = ("stack", "pack", "left_of", "between")
 name is "learned", and the domain `learned` has them."""
 
 
-def load_model(path: Path, model: str | None = None) -> Model:
+def load_model(path: Path, model: str | None = None) -> RelationModel:
     """Load the model of a weight file.
 
     Args:
@@ -130,7 +133,7 @@ def load_model(path: Path, model: str | None = None) -> Model:
         raise InputError(f"these are no weights of '{name}': {error}", file=path) from None
 
 
-def shipped_model(relation: str, name: str) -> Model:
+def shipped_model(relation: str, name: str) -> RelationModel:
     """Load the model of a name, of the weights that ship, or of none where it needs none.
 
     Raises:
@@ -204,7 +207,7 @@ def shipped_grounding(relation: str, name: str) -> Grounding:
     return _grounding(shipped_model(relation, name))
 
 
-def _grounding(model: Model) -> Grounding:
+def _grounding(model: RelationModel) -> Grounding:
     from grounding.paper.planner_adapter import SnappingSampler
     from grounding.paper.runtime import PaperModel
     from grounding.relational.model import RelationalModel

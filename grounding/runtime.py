@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.random import Generator as Random
 
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.relation_scene import relation_scene_of
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Array, Pose
@@ -25,7 +25,7 @@ class Grounding:
         model: What was trained.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: RelationModel) -> None:
         self.model = model
 
     def propose(

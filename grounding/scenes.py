@@ -26,7 +26,7 @@ from grounding.random_poses import (
 )
 from grounding.relation_scene import Placed, RelationScene, gap, near
 from grounding.separation import Obstacles, separations
-from grounding.supports import Support, scaled_region, support_templates
+from grounding.supports import FurnitureSupport, scaled_region, support_templates
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drops import Drops, Item
 
@@ -58,7 +58,7 @@ class LabelledScene:
     names: list[str]
     scales: list[float]
     poses: list[Array]
-    support: Support
+    support: FurnitureSupport
     kind: str
     holds: bool
     feasible: bool
@@ -80,7 +80,7 @@ class SampledScene:
     names: tuple[str, str]
     scales: tuple[float, float]
     stand: Placed
-    support: Support
+    support: FurnitureSupport
     body: BodyGeometry
     others: tuple[tuple[str, float, Placed], ...]
     obstacles: Obstacles
@@ -112,7 +112,7 @@ class SampledScene:
         )
 
 
-class Scenes:
+class SceneSampler:
     """Draws scenes of one relation and split; keep it, for its shapes are made once.
 
     Args:
@@ -184,7 +184,7 @@ class Scenes:
         crowded: bool,
         number: int,
         stand: Placed,
-        support: Support,
+        support: FurnitureSupport,
         others: list[tuple[str, float, Placed]],
         rng: Random,
     ) -> tuple[str, float, Placed] | None:

@@ -114,7 +114,7 @@ def train_relational(
         proposals = flow_training.train_flow(
             chart,
             positive,
-            flow_training.Args(seed=args.seed),
+            flow_training.FlowOptions(seed=args.seed),
             lambda step, steps, loss: progress(f"flow {step}/{steps}, loss {loss:.4f}"),
         )
     else:
@@ -124,12 +124,12 @@ def train_relational(
     rank, score = {}, None
     ranks = count >= RANKS_FROM and not holds.all()
     if ranks:
-        from grounding.relational.training import Args, train_ranker
+        from grounding.relational.training import RankerOptions, train_ranker
 
         rank, score = train_ranker(
             [one for one, good in zip(measured, usable, strict=True) if good],
             holds[usable],
-            Args(seed=args.seed),
+            RankerOptions(seed=args.seed),
             lambda step, steps, score: progress(
                 f"ranker {step}/{steps}, validation accuracy {score:.4f}"
             ),
@@ -163,14 +163,14 @@ def _certainty(
     """Return the card's entries on whether the ranker may judge, and else why not."""
     why = too_few(holds)
     if why is None and ranks:
-        from grounding.relational.training import Args, train_ranker
+        from grounding.relational.training import RankerOptions, train_ranker
 
         seen = [one for one, good in zip(measured, usable, strict=True) if good]
         labels = holds[usable]
 
         def fit(train_rows: NDArray[np.intp], test_rows: NDArray[np.intp]) -> Labels:
             rank, _ = train_ranker(
-                [seen[row] for row in train_rows], labels[train_rows], Args(seed=seed)
+                [seen[row] for row in train_rows], labels[train_rows], RankerOptions(seed=seed)
             )
             ranker = Ranker(rank)
             return np.array(

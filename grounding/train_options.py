@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 NETWORKS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
+"""The paper's models: network and features."""
 
 OPTIONS: Mapping[str, tuple[str, ...]] = {
     "scheme": NETWORKS,

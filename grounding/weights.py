@@ -29,7 +29,7 @@ MOST_HEADER = 1_000_000
 TYPES = ("BOOL", "U8", "I8", "I16", "I32", "I64", "F16", "F32", "F64")
 """The types of arrays that numpy has, in the words of safetensors."""
 
-_REMEDY = "Train it again: tamp-learn train --help"
+REMEDY = "Train it again: tamp-learn train --help"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +68,7 @@ def read_weights(path: Path) -> Weights:
     from safetensors import SafetensorError
     from safetensors.numpy import load
 
-    pair = read_pair(path, FORMAT, what="weight file", most=MOST_BYTES, remedy=_REMEDY)
+    pair = read_pair(path, FORMAT, what="weight file", most=MOST_BYTES, remedy=REMEDY)
     content, card = pair.content, pair.card
     for name in ("relation", "model"):
         if name in card and not (isinstance(card[name], str) and card[name].isprintable()):
@@ -76,7 +76,7 @@ def read_weights(path: Path) -> Weights:
             raise InputError(
                 f"'{name}' of the card is {card[name]!r:.60}, not a name",
                 file=card_file,
-                remedy=_REMEDY,
+                remedy=REMEDY,
             )
     try:
         _check_header(content)
@@ -91,12 +91,12 @@ def read_weights(path: Path) -> Weights:
         MemoryError,
     ) as error:
         what = error.message if isinstance(error, InputError) else str(error)
-        raise InputError(f"the weights are damaged: {what}", file=path, remedy=_REMEDY) from None
+        raise InputError(f"the weights are damaged: {what}", file=path, remedy=REMEDY) from None
     for name, array in arrays.items():
         if array.dtype.kind == "f" and not np.isfinite(array).all():
             first = ", ".join(str(index) for index in np.argwhere(~np.isfinite(array))[0])
             what = f"array '{name}', entry ({first}): it is not finite"
-            raise InputError(f"the weights are damaged: {what}", file=path, remedy=_REMEDY)
+            raise InputError(f"the weights are damaged: {what}", file=path, remedy=REMEDY)
     if pair.stranger is not None:
         raise pair.stranger
     return Weights(arrays, card)

@@ -192,3 +192,24 @@ def test_a_name_means_one_thing(word: str) -> None:
         )
     }
     assert found == set(HOMONYMS[word])
+
+
+SAME_CLASS_NAMES = {
+    "Action": "PDDL's schema; what `tamp` and `tamp.pddlstream` return, by their public names",
+    "Run": "a run of planning; the command `tamp-bench run`",
+    "Solution": "what `tamp` and `tamp.pddlstream` return, by their public names",
+}
+"""Class names that stand in several files, and why."""
+
+
+def test_a_class_name_stands_in_one_file() -> None:
+    homes: dict[str, list[str]] = {}
+    for folder in VERB_FOLDERS:
+        for path in _files(folder):
+            for node in ast.parse(path.read_text(encoding="utf-8")).body:
+                if isinstance(node, ast.ClassDef):
+                    homes.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+
+    assert len(homes) > 400
+    shared = {name: files for name, files in homes.items() if len(files) > 1}
+    assert set(shared) == set(SAME_CLASS_NAMES), shared

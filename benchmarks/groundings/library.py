@@ -10,7 +10,7 @@ from pathlib import Path
 
 from benchmarks.groundings.case import Case
 from grounding.dataset import Dataset, read_dataset
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.registry import PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS, load_model
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
@@ -51,7 +51,7 @@ class Library:
             generate(Job(relation, split, count), path, workers=1)
         return _read(path)
 
-    def model(self, case: Case) -> Model | None:
+    def model(self, case: Case) -> RelationModel | None:
         """The grounding of a case; None when its weights are missing and may not be trained.
 
         Raises:
@@ -91,10 +91,12 @@ class Library:
         """The encoder's weights, trained if need be."""
         path = self.weights / f"{relation}-encoder.safetensors"
         if not path.is_file():
-            from grounding.paper.encoders import Args, train_encoder
+            from grounding.paper.encoders import EncoderOptions, train_encoder
 
             self.say(f"training {path}")
-            args = Args() if self.iterations is None else Args(iterations=self.iterations, points=256)
+            args = (
+                EncoderOptions() if self.iterations is None else EncoderOptions(iterations=self.iterations, points=256)
+            )
             arrays, _ = train_encoder(self.scenes(relation, "train"), "conv", "one", args, lambda line: None)
             write_weights(path, Weights(arrays, {"model": "encoder", "kind": "conv", "relation": relation}))
         return path

@@ -12,13 +12,13 @@ import numpy as np
 from benchmarks.groundings.library import Library
 from grounding.dataset import Dataset
 from grounding.evaluate import accuracy, evaluate
-from grounding.model import Model
+from grounding.model import RelationModel
 
 BATCHES = (1, 64)
 """Poses that are asked for, or judged, at once."""
 
 
-def measured_accuracy(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+def measured_accuracy(model: RelationModel, library: Library, relation: str, scenes: int) -> dict[str, Any]:
     """Accuracy on scenes of the training set (all of it, also where a model has seen fewer) and of the test set."""
     splits = {split: library.scenes(relation, split) for split in ("train", "test")}
     return {split: accuracy(model, data, scenes) for split, data in splits.items()} | {
@@ -26,12 +26,12 @@ def measured_accuracy(model: Model, library: Library, relation: str, scenes: int
     }
 
 
-def measured_success(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+def measured_success(model: RelationModel, library: Library, relation: str, scenes: int) -> dict[str, Any]:
     """What `grounding.evaluate` finds on test scenes."""
     return asdict(evaluate(model, library.scenes(relation, "test"), scenes))
 
 
-def measured_times(model: Model, library: Library, relation: str, scenes: int) -> dict[str, Any]:
+def measured_times(model: RelationModel, library: Library, relation: str, scenes: int) -> dict[str, Any]:
     """Medians over test scenes of the milliseconds for a batch, of proposals and of judgements, in one thread.
 
     Each scene's body was asked for once before. Situations are made before the clock starts.
@@ -67,7 +67,7 @@ def _median(data: Dataset, scenes: int, asked: Callable[[Any], Any]) -> float:
     return 1e3 * float(np.median(seconds[1:].min(axis=0)))
 
 
-MEASURES: dict[str, Callable[[Model, Library, str, int], dict[str, Any]]] = {
+MEASURES: dict[str, Callable[[RelationModel, Library, str, int], dict[str, Any]]] = {
     "accuracy": measured_accuracy,
     "success": measured_success,
     "times": measured_times,

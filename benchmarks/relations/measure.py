@@ -12,7 +12,7 @@ from benchmarks.relations.geometry import Array, Batch, pick, situations, troubl
 from benchmarks.relations.hand import put, scenes, shown
 from benchmarks.relations.relations import RELATIONS
 from grounding.relations.committee import Committee
-from grounding.relations.generator import Generator
+from grounding.relations.generator import PoseGenerator
 from grounding.relations.learner import cross_validated, trained
 from grounding.relations.situation import joined
 from grounding.relations.variety import unvaried
@@ -86,7 +86,7 @@ def steady(s: Batch, row: int) -> Array:
     return z if s["cyl"][row, 0] else np.concatenate([np.eye(3), -np.eye(3)])
 
 
-def holding(generator: Generator, name: str, rng: Random) -> tuple[float, float]:
+def holding(generator: PoseGenerator, name: str, rng: Random) -> tuple[float, float]:
     """The share of unseen scenes, where it can hold at all, in which the one proposed pose holds and is clear; and the
     median time of one, milliseconds of the processor.
     """

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import tyro
 
-from grounding.demonstrate.relation import Relation, parse_relation
+from grounding.demonstrate.relation import DemonstratedRelation, parse_relation
 from tamp.errors import InputError
 from tamp.system import guard
 from tamp.system.command_line import INTERRUPTED, as_command
@@ -60,7 +60,7 @@ def _demonstrate(options: Demo) -> None:
         raise InputError(f"--seed must be between 0 and 2**63, not {options.seed}")
     named = None if options.relation is None else parse_relation(options.relation)
 
-    from grounding.demonstrate.folder import Source, check_folder
+    from grounding.demonstrate.folder import SceneSource, check_folder
     from grounding.demonstrate.runner import Runner
     from grounding.demonstrate.server import DemonstrationServer
     from grounding.demonstrate.studio import Studio
@@ -68,7 +68,7 @@ def _demonstrate(options: Demo) -> None:
     from tamp.view.server import check_browser, serve_until_interrupted
 
     relation = named or _continued(options.out) or parse_relation(USUAL)
-    source = Source(options.scene, options.out)
+    source = SceneSource(options.scene, options.out)
     check_folder(source.folder(relation))
     if not options.no_open:
         check_browser("Serve with tamp-demo --no-open, and open the address that it says")
@@ -81,7 +81,7 @@ def _demonstrate(options: Demo) -> None:
             serve_until_interrupted(server, browser=not options.no_open)
 
 
-def _continued(out: Path | None) -> Relation | None:
+def _continued(out: Path | None) -> DemonstratedRelation | None:
     """Return the relation that a folder's demonstrations are about; None where there are none."""
     from grounding.demonstrate.folder import relation_of_folder
 

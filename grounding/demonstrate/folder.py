@@ -9,7 +9,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from grounding.demonstrate.relation import Argument, Relation
+from grounding.demonstrate.relation import Argument, DemonstratedRelation
 from grounding.relations.demonstration_file import (
     MOST_FILES,
     Demonstration,
@@ -28,7 +28,7 @@ FIRST_FACT = re.compile(r"[\s(]*(?:(?:and|not)[\s(]+)*([a-z][\w-]*)", re.IGNOREC
 
 
 @dataclass(frozen=True)
-class Source:
+class SceneSource:
     """The origin of scenes, and the place of demonstrations.
 
     Attributes:
@@ -39,7 +39,7 @@ class Source:
     scene: Path | None = None
     out: Path | None = None
 
-    def folder(self, relation: Relation) -> Path:
+    def folder(self, relation: DemonstratedRelation) -> Path:
         """Return the folder of a relation's demonstrations."""
         return self.out or Path("demos") / relation.name
 
@@ -86,7 +86,7 @@ class DemonstrationFolder:
             demonstrations of a relation of that name with another number of arguments.
     """
 
-    def __init__(self, path: Path, relation: Relation) -> None:
+    def __init__(self, path: Path, relation: DemonstratedRelation) -> None:
         self.path, self.relation = path, relation.name
         self._cards: dict[str, Card] = {}
         self._removed: list[tuple[str, bytes]] = []
@@ -230,7 +230,7 @@ def check_folder(path: Path) -> None:
     check_writable(path / "demonstration.yaml")
 
 
-def relation_of_folder(path: Path) -> Relation | None:
+def relation_of_folder(path: Path) -> DemonstratedRelation | None:
     """Find the relation that the first demonstration in a folder is about, with its arguments; None
     where there is none.
     """
@@ -245,7 +245,7 @@ def relation_of_folder(path: Path) -> Relation | None:
     return None
 
 
-def _relation(label: Label, scene: Scene) -> Relation:
+def _relation(label: Label, scene: Scene) -> DemonstratedRelation:
     """Tell what the arguments of a label are from what they are in its scene."""
     arguments: list[Argument] = []
     for letter, name in zip("abcdef", label.arguments, strict=False):
@@ -255,4 +255,4 @@ def _relation(label: Label, scene: Scene) -> Relation:
         elif name in scene.cavities:
             kind = "container"
         arguments.append(Argument(letter, kind))
-    return Relation(label.relation, tuple(arguments))
+    return DemonstratedRelation(label.relation, tuple(arguments))

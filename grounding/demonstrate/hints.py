@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from grounding.demonstrate.relation import Relation
+from grounding.demonstrate.relation import DemonstratedRelation
 from grounding.demonstrate.viewer import viewer_yaw
 from grounding.relations.demonstration_file import Demonstration
 from grounding.relations.situation import joined, situation_of
@@ -51,7 +51,7 @@ class Hint:
     files: tuple[str, ...] = ()
 
 
-def hints(relation: Relation, demonstrations: Sequence[Demonstration]) -> list[Hint]:
+def hints(relation: DemonstratedRelation, demonstrations: Sequence[Demonstration]) -> list[Hint]:
     """Say what demonstrations lack: the contradictions first, then the labels, then variety."""
     found = [*contradictions(demonstrations), *_labels(relation, demonstrations)]
     holding = [one for one in demonstrations if one.holds]
@@ -80,7 +80,7 @@ def contradicted(shown: Demonstration, others: Sequence[Demonstration]) -> list[
     ]
 
 
-def next_step(relation: Relation, demonstrations: Sequence[Demonstration]) -> str:
+def next_step(relation: DemonstratedRelation, demonstrations: Sequence[Demonstration]) -> str:
     """Say what to do next, in a sentence or two, to somebody who has never seen the page."""
     holding = sum(one.holds for one in demonstrations)
     other = len(demonstrations) - holding
@@ -102,7 +102,9 @@ def next_step(relation: Relation, demonstrations: Sequence[Demonstration]) -> st
     return "That is usually enough: press Learn."
 
 
-def _labels(relation: Relation, demonstrations: Sequence[Demonstration]) -> Iterator[Hint]:
+def _labels(
+    relation: DemonstratedRelation, demonstrations: Sequence[Demonstration]
+) -> Iterator[Hint]:
     holding = sum(one.holds for one in demonstrations)
     other = len(demonstrations) - holding
     if holding >= FROM and other == 0:
@@ -115,7 +117,7 @@ def _labels(relation: Relation, demonstrations: Sequence[Demonstration]) -> Iter
         yield Hint("labels", f"No demonstration says where {relation.name} holds")
 
 
-def _variety(relation: Relation, holding: Sequence[Demonstration]) -> Iterator[Hint]:
+def _variety(relation: DemonstratedRelation, holding: Sequence[Demonstration]) -> Iterator[Hint]:
     """Find what is the same in all demonstrations in which the relation holds."""
     names = [one.name for one in relation.arguments]
     if any(len(one.arguments) != len(names) for one in holding):

@@ -7,11 +7,13 @@ from typing import Any
 
 from grounding.demonstrate.folder import Card, DemonstrationFolder
 from grounding.demonstrate.hints import hints, next_step
-from grounding.demonstrate.relation import KINDS, PRESETS, Relation, parse_relation
+from grounding.demonstrate.relation import KINDS, PRESETS, DemonstratedRelation, parse_relation
 from grounding.demonstrate.use import Uses
 
 
-def records(relation: Relation, folder: DemonstrationFolder, uses: Uses) -> dict[str, Any]:
+def records(
+    relation: DemonstratedRelation, folder: DemonstrationFolder, uses: Uses
+) -> dict[str, Any]:
     """Describe a relation and its demonstrations for the page."""
     cards = folder.cards()
     shown = [one for card in cards for one in card.demonstrations]
@@ -43,7 +45,7 @@ def records(relation: Relation, folder: DemonstrationFolder, uses: Uses) -> dict
     }
 
 
-def in_arguments(text: str, relation: Relation, folder: DemonstrationFolder) -> str:
+def in_arguments(text: str, relation: DemonstratedRelation, folder: DemonstrationFolder) -> str:
     """Return what tamp-learn said with the relation's arguments in the place of the bodies of the
     first demonstration, which it says them of: "gap to b" for "gap to blue_can".
     """

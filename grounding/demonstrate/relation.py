@@ -58,7 +58,7 @@ class Argument:
 
 
 @dataclass(frozen=True)
-class Relation:
+class DemonstratedRelation:
     """A relation to demonstrate; the first argument is the body that a plan would place."""
 
     name: str
@@ -77,7 +77,7 @@ class Relation:
         return next((said for text, said in PRESETS.items() if parse_relation(text) == self), "")
 
 
-def parse_relation(text: str) -> Relation:
+def parse_relation(text: str) -> DemonstratedRelation:
     """Parse a relation as users write it: `stack(a, b)`, `inside(a, b: container)`, `(stack a b)`.
 
     Raises:
@@ -97,7 +97,7 @@ def parse_relation(text: str) -> Relation:
     _check_name(name, "relation")
     arguments = tuple(_argument(part) for part in parts)
     _check_arguments(name, arguments)
-    return Relation(name.lower(), arguments)
+    return DemonstratedRelation(name.lower(), arguments)
 
 
 def _argument(text: str) -> Argument:

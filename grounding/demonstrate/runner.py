@@ -25,7 +25,7 @@ PROGRAMS: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class Run:
+class CommandState:
     """The state of a command.
 
     Attributes:
@@ -73,13 +73,13 @@ class Runner:
         self._reader.start()
         return True
 
-    def state(self) -> Run:
+    def state(self) -> CommandState:
         """Return how far the command is."""
         if self._process is None or self._reader is None:
-            return Run()
+            return CommandState()
         running = self._reader.is_alive()
         text = bytes(self._text).decode("utf-8", "replace").replace("\r", "\n")
-        return Run(self._command, running, None if running else self._process.wait(), text)
+        return CommandState(self._command, running, None if running else self._process.wait(), text)
 
     def stop(self) -> None:
         """End the command, if it runs."""

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.random import Generator as Random
 
 from grounding.demonstrate.models import sample_body, sample_furniture
-from grounding.demonstrate.relation import Argument, Relation
+from grounding.demonstrate.relation import Argument, DemonstratedRelation
 from grounding.demonstrate.viewer import nearest_side, stand_of
 from grounding.relations.demonstration_file import Label
 from grounding.relations.demonstration_text import (
@@ -121,7 +121,7 @@ class Stage:
         return DemonstrationFile(self.entries, (label,), note)
 
 
-def sample_stage(relation: Relation, rng: Random) -> Stage:
+def sample_stage(relation: DemonstratedRelation, rng: Random) -> Stage:
     """Sample a scene for a relation: furniture of any height somewhere, turned anyhow; on it bodies
     for the arguments and up to OTHERS more, apart from each other.
     """
@@ -149,7 +149,9 @@ def sample_stage(relation: Relation, rng: Random) -> Stage:
             return Stage(placed, _read(placed), tuple(arguments))
 
 
-def open_stage(file: str | Path, relation: Relation, chosen: Mapping[str, str]) -> Stage:
+def open_stage(
+    file: str | Path, relation: DemonstratedRelation, chosen: Mapping[str, str]
+) -> Stage:
     """Open a problem file as a scene to demonstrate in.
 
     Args:

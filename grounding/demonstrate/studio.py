@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from grounding.demonstrate.folder import DemonstrationFolder, Source
+from grounding.demonstrate.folder import DemonstrationFolder, SceneSource
 from grounding.demonstrate.hints import contradicted
 from grounding.demonstrate.message import Message, read_angle, read_poses, read_word
 from grounding.demonstrate.opinion import Opinion
 from grounding.demonstrate.questions import telling_stages
 from grounding.demonstrate.records import in_arguments, records
-from grounding.demonstrate.relation import Relation, parse_relation
+from grounding.demonstrate.relation import DemonstratedRelation, parse_relation
 from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.scene import Stage, choices_of, open_stage, sample_stage, shuffled
 from grounding.demonstrate.stage_document import flat, stage_document
@@ -44,8 +44,8 @@ class Studio:
 
     def __init__(
         self,
-        relation: Relation,
-        source: Source,
+        relation: DemonstratedRelation,
+        source: SceneSource,
         workbench: Workbench,
         runner: Runner,
         seed: int = 0,

@@ -7,7 +7,7 @@ import shlex
 from dataclasses import dataclass
 from pathlib import Path
 
-from grounding.demonstrate.relation import Relation
+from grounding.demonstrate.relation import DemonstratedRelation
 from grounding.demonstrate.scene import Stage
 from grounding.demonstrate.viewer import depth, stand_of, viewer_yaw
 from grounding.relations.demonstration_file import Label
@@ -79,7 +79,9 @@ class Uses:
         }
 
 
-def write_problem(uses: Uses, relation: Relation, stage: Stage, scene: Path | None) -> None:
+def write_problem(
+    uses: Uses, relation: DemonstratedRelation, stage: Stage, scene: Path | None
+) -> None:
     """Write the problem to make the relation true in a scene.
 
     Args:

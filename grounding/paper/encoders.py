@@ -26,7 +26,7 @@ to that cube.
 
 
 @dataclass(frozen=True)
-class Args:
+class EncoderOptions:
     """The encoder's training options.
 
     Attributes:
@@ -121,7 +121,7 @@ def train_encoder(
     data: Dataset,
     kind: str = "conv",
     scaling: str = "one",
-    args: Args = Args(),
+    args: EncoderOptions = EncoderOptions(),
     progress: Callable[[str], None] = lambda line: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
     """Train an encoder; return its arrays, with `scale` and `points` as the runtime reads them, and

@@ -41,7 +41,7 @@ Encoder = Callable[[Array], NDArray[Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class Observation:
+class FeatureObservation:
     """A situation as the networks see it.
 
     Attributes:
@@ -67,13 +67,13 @@ class Features(Protocol):
 
     size: int
 
-    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> FeatureObservation:
         """Compute the features of a situation as it is; without its surroundings for a network that
         does not see them.
         """
         ...
 
-    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
+    def at(self, seen: FeatureObservation, situation: RelationScene, poses: Array) -> Array:
         """Compute the features that argument 1 would have at T_world_body, shape (n, 4, 4); returns
         (n, f).
         """
@@ -94,7 +94,7 @@ class BoxFeatures:
     def __init__(self, residual: bool = False) -> None:
         self._residual = residual
 
-    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> FeatureObservation:
         """See Features."""
         support, body = situation.support, situation.body
         others = situation.others if surroundings else ()
@@ -110,9 +110,9 @@ class BoxFeatures:
         if self._residual:
             start = body.matrix[:3, :3]
             features[1] = _unturned(features[1:2, :3], start[None], half)[0]
-        return Observation(features[:2], features[2:], centres[0], middle, half, start)
+        return FeatureObservation(features[:2], features[2:], centres[0], middle, half, start)
 
-    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
+    def at(self, seen: FeatureObservation, situation: RelationScene, poses: Array) -> Array:
         """See Features."""
         centres = _moved(poses, seen.centre) - seen.origin
         if self._residual:
@@ -138,7 +138,7 @@ class CloudFeatures:
         self._encode, self._residual = encoder, residual
         self._clouds: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
-    def observe(self, situation: RelationScene, surroundings: bool = True) -> Observation:
+    def observe(self, situation: RelationScene, surroundings: bool = True) -> FeatureObservation:
         """See Features."""
         placed = (situation.support, situation.body, *(situation.others if surroundings else ()))
         features = np.stack([self._features(item) for item in placed])
@@ -150,9 +150,11 @@ class CloudFeatures:
         if self._residual:
             start = matrix[:3, :3]
             centre = start.T @ (features[1, :3] + origin - matrix[:3, 3])
-        return Observation(features[:2], features[2:], origin, centre, (high - low) / 2, start)
+        return FeatureObservation(
+            features[:2], features[2:], origin, centre, (high - low) / 2, start
+        )
 
-    def at(self, seen: Observation, situation: RelationScene, poses: Array) -> Array:
+    def at(self, seen: FeatureObservation, situation: RelationScene, poses: Array) -> Array:
         """See Features. Each pose's cloud is encoded, unless argument 1 is turned as it was."""
         features = np.empty((len(poses), PC))
         for row, pose in zip(features, poses, strict=True):
@@ -190,7 +192,7 @@ def box_features(centres: Array, turns: Array, corners: Array) -> Array:
     return features
 
 
-def completed(seen: Observation, positions: Array, turns: Array) -> Array:
+def completed(seen: FeatureObservation, positions: Array, turns: Array) -> Array:
     """Complete argument 1's features when a generator put it at positions (n, 3) and unit
     quaternions (n, 4); shape (n, f).
 
@@ -206,7 +208,7 @@ def completed(seen: Observation, positions: Array, turns: Array) -> Array:
     return np.concatenate([positions, turns, code], axis=1, dtype=positions.dtype)
 
 
-def poses_of(seen: Observation, positions: Array, turns: Array) -> Array:
+def poses_of(seen: FeatureObservation, positions: Array, turns: Array) -> Array:
     """Compute T_world_body, shape (n, 4, 4), of argument 1 at positions (n, 3), as features have
     them, turned by (n, 4) from its start.
     """

@@ -18,10 +18,8 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from grounding.paper.features import BB, CODE
+from grounding.paper.numpy_networks import NOISE
 from grounding.paper.rotations import QUADRATIC
-
-NOISE = 4
-"""Gaussian numbers that the generator is given."""
 
 SCENE = 16
 """Numbers that the surroundings are pooled into."""

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from grounding.weights import REMEDY
 from tamp.errors import InputError
 
 Floats = NDArray[np.float32]
 Arrays = Mapping[str, NDArray[Any]]
-
-REMEDY = "Train it again: tamp-learn train --help"
 
 NOISE = 4
 """Gaussian numbers that the generator is given."""

@@ -11,14 +11,13 @@ from grounding.paper.features import (
     PC,
     BoxFeatures,
     CloudFeatures,
+    FeatureObservation,
     Features,
-    Observation,
     poses_of,
 )
 from grounding.paper.kernels import normalize
 from grounding.paper.numpy_networks import (
     NOISE,
-    REMEDY,
     Arrays,
     Floats,
     Network,
@@ -27,7 +26,7 @@ from grounding.paper.numpy_networks import (
     read_layers,
 )
 from grounding.relation_scene import RelationScene
-from grounding.weights import Weights
+from grounding.weights import REMEDY, Weights
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Array
 
@@ -165,7 +164,7 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
     )
 
 
-def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Floats, Floats]:
+def generated(network: Network, seen: FeatureObservation, noise: Floats) -> tuple[Floats, Floats]:
     """Generate positions (n, 3) relative to argument 0, and quaternions (n, 4) of any norm, for
     noise (n, 4).
     """
@@ -181,7 +180,11 @@ def generated(network: Network, seen: Observation, noise: Floats) -> tuple[Float
 
 
 def classified(
-    network: Network, features: Features, seen: Observation, situation: RelationScene, poses: Array
+    network: Network,
+    features: Features,
+    seen: FeatureObservation,
+    situation: RelationScene,
+    poses: Array,
 ) -> Array:
     """Classify poses: probabilities, shape (n,), with argument 1 at T_world_body, shape (n, 4,
     4).
@@ -189,7 +192,7 @@ def classified(
     return judged(network, seen, features.at(seen, situation, poses))
 
 
-def judged(network: Network, seen: Observation, argument: Array) -> Array:
+def judged(network: Network, seen: FeatureObservation, argument: Array) -> Array:
     """Classify features: probabilities, shape (n,), with argument 1's features as given, shape (n,
     f).
     """

@@ -23,9 +23,9 @@ from grounding.random_poses import pick, random_rest, solids, upright
 from grounding.relation_scene import Placed, region_of
 from grounding.scenes import GAP, TRIES, SampledScene
 from grounding.separation import Obstacles, separations
-from grounding.supports import Support, scaled_region
+from grounding.supports import FurnitureSupport, scaled_region
 from tamp.errors import InputError
-from tamp.geometric.loading.furniture import FURNITURE, Options
+from tamp.geometric.loading.furniture import FURNITURE, FurnitureOptions
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Part, Surface
 
@@ -68,11 +68,13 @@ CONTAINER_WALL_M = 0.02
 
 
 @lru_cache(maxsize=4)
-def paper_supports(relation: str, split: str) -> Mapping[str, Support]:
+def paper_supports(relation: str, split: str) -> Mapping[str, FurnitureSupport]:
     """Make the pieces for `on`, the boxes for `inside`, by name; deterministic."""
     if relation == "inside":
         made = {
-            name: FURNITURE["open_box"].build(name, size, Options(thickness=CONTAINER_WALL_M))
+            name: FURNITURE["open_box"].build(
+                name, size, FurnitureOptions(thickness=CONTAINER_WALL_M)
+            )
             for name, size in CONTAINER_SIZES_M.items()
         }
         bodies = {
@@ -80,14 +82,14 @@ def paper_supports(relation: str, split: str) -> Mapping[str, Support]:
             for name, built in made.items()
         }
         return {
-            name: Support(body.parts, region_of(body, body.cavities[0]))
+            name: FurnitureSupport(body.parts, region_of(body, body.cavities[0]))
             for name, body in bodies.items()
         }
 
-    found: dict[str, Support] = {}
+    found: dict[str, FurnitureSupport] = {}
     for name, size in SUPPORT_SIZES_M[split].items():
         body = _table(name, size) if name == "table" else _solid(name, size)
-        found[name] = Support(body.parts, region_of(body, body.surfaces[0]))
+        found[name] = FurnitureSupport(body.parts, region_of(body, body.surfaces[0]))
     return found
 
 
@@ -191,7 +193,7 @@ class PaperScenes:
     def _body_around(
         self,
         there: bool,
-        support: Support,
+        support: FurnitureSupport,
         T_world_region: Array,
         stand: Placed,
         obstacles: list[Placed],
@@ -212,7 +214,7 @@ class PaperScenes:
         return None
 
     def _rest(
-        self, form: BodyGeometry, support: Support, T_world_region: Array, rng: Random
+        self, form: BodyGeometry, support: FurnitureSupport, T_world_region: Array, rng: Random
     ) -> Array | None:
         """Sample T_region_body: as it stands in its own frame with any yaw; in a container half of
         the time along the world's axes, as the published sampler has it, else on any stable face.
@@ -258,7 +260,7 @@ def _reachable(
 
 
 def _table(name: str, size: tuple[float, float, float]) -> Body:
-    built = FURNITURE["table"].build(name, size, Options())
+    built = FURNITURE["table"].build(name, size, FurnitureOptions())
     return Body(name, built.parts, Pose(), False, surfaces=built.surfaces)
 
 

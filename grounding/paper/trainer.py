@@ -25,7 +25,7 @@ from grounding.paper.critic import critic_gradient
 from grounding.paper.feature_table import FeatureTable
 from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
 from grounding.paper.random_streams import random_stream, stacked_draws
-from grounding.paper.trainer_options import AHEAD, VALIDATION, Args
+from grounding.paper.trainer_options import AHEAD, VALIDATION, TrainerOptions
 from grounding.paper.trainer_state import load_state, save_state
 
 SCHEMES = ("discriminator", "classifier", "both")
@@ -50,7 +50,7 @@ class Trainer:
     scheme: str
     sizes: Sequence[int]
     seeds: Sequence[int]
-    args: Args = field(default_factory=Args)
+    args: TrainerOptions = field(default_factory=TrainerOptions)
 
     def __post_init__(self) -> None:
         features = self.table.features

@@ -14,7 +14,7 @@ VALIDATION = 500
 
 
 @dataclass(frozen=True)
-class Args:
+class TrainerOptions:
     """The training options of the networks.
 
     Attributes:

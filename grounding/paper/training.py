@@ -13,12 +13,10 @@ from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
 from grounding.paper.runtime import CHOICE, RESIDUAL, TRIES, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
-from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_options import TrainerOptions
+from grounding.train_options import NETWORKS
 from grounding.weights import Weights
 from tamp.errors import InputError
-
-MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
-"""Network and features."""
 
 DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier", "attention", "own-choice")
 """What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
@@ -58,7 +56,7 @@ def train(
 
     Args:
         data: The training set.
-        model: One of MODELS.
+        model: One of NETWORKS.
         scheme: What teaches the generator, one of SCHEMES.
         sizes: How many of the examples each model sees.
         seeds: As many; initial weights, order of the examples and noise.
@@ -78,7 +76,7 @@ def train(
     _check(data, model, scheme, sizes, seeds, encoder, departures)
     residual = _clouds(model) or "residual-turn" in departures
     table = table or features_of(data, model, encoder, progress, max(sizes), residual)
-    args = Args(
+    args = TrainerOptions(
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,
@@ -163,8 +161,8 @@ def _check(
             raise InputError(f"unknown departure '{found}'", found=found, choices=DEPARTURES)
     if "attention" in departures and model.startswith("mlp"):
         raise InputError(f"model '{model}' sees no surroundings to attend to")
-    if model not in MODELS:
-        raise InputError(f"unknown model '{model}'", found=model, choices=MODELS)
+    if model not in NETWORKS:
+        raise InputError(f"unknown model '{model}'", found=model, choices=NETWORKS)
     if scheme not in SCHEMES:
         raise InputError(f"unknown scheme '{scheme}'", found=scheme, choices=SCHEMES)
     if len(sizes) != len(seeds) or not sizes:

@@ -15,8 +15,8 @@ from grounding.paper.features import (
     PC,
     BoxFeatures,
     CloudFeatures,
+    FeatureObservation,
     Features,
-    Observation,
     poses_of,
 )
 from grounding.paper.rotations import rotations
@@ -70,7 +70,7 @@ class TreeModel:
         argument = self._features.at(seen, situation, poses)
         return self.tree.positive[self.tree.leaf(_rows(seen, argument))]
 
-    def _observe(self, situation: RelationScene) -> Observation:
+    def _observe(self, situation: RelationScene) -> FeatureObservation:
         return self._features.observe(replace(situation, others=()))
 
 
@@ -158,7 +158,7 @@ class Tree:
 
 
 def position_limits(
-    low: Array, high: Array, turns: Array, seen: Observation
+    low: Array, high: Array, turns: Array, seen: FeatureObservation
 ) -> tuple[Array, Array]:
     """Compute the limits of argument 1's position, each shape (n, 3), that limits of its features,
     shape (n, f), amount to.
@@ -181,7 +181,7 @@ def _columns(size: int) -> tuple[slice, slice]:
     return slice(0, 3), slice(9, 13) if size == BB else slice(3, 7)
 
 
-def _rows(seen: Observation, argument: Array) -> Array:
+def _rows(seen: FeatureObservation, argument: Array) -> Array:
     return np.concatenate([np.broadcast_to(seen.arguments[0], argument.shape), argument], axis=1)
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator as Random
 
-from grounding.paper.features import BB, BoxFeatures, Observation, completed, poses_of
+from grounding.paper.features import BB, BoxFeatures, FeatureObservation, completed, poses_of
 from grounding.paper.runtime import Network, classified, features_in, judged, unit
 from grounding.relation_scene import RelationScene
 from grounding.weights import Weights
@@ -66,7 +66,7 @@ def _box_classifier(weights: Weights) -> Network:
     return network
 
 
-def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Array, Array]:
+def _accepted(classifier: Network, seen: FeatureObservation, rng: Random) -> tuple[Array, Array]:
     """Sample one accepted position (3,) and its quaternion (4,)."""
     positions, turns, first = np.zeros((1, 3)), np.zeros((1, 4)), 0
     for count in TRIES:
@@ -78,7 +78,7 @@ def _accepted(classifier: Network, seen: Observation, rng: Random) -> tuple[Arra
     return positions[first], turns[first]
 
 
-def _drawn(seen: Observation, count: int, rng: Random) -> tuple[Array, Array]:
+def _drawn(seen: FeatureObservation, count: int, rng: Random) -> tuple[Array, Array]:
     """Sample positions (n, 3) relative to argument 0, and quaternions (n, 4), w >= 0 as in the
     features.
     """

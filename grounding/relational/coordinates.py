@@ -42,7 +42,7 @@ WIDEST = 0.12
 
 
 @dataclass(frozen=True, eq=False)
-class Demonstration:
+class EncodedExample:
     """One positive example in relational coordinates.
 
     Attributes:
@@ -138,7 +138,7 @@ class RelationalCoordinates:
         entries = asdict(self)
         return {**entries, "ceiling": self.ceiling if math.isfinite(self.ceiling) else None}
 
-    def encode(self, measured: Measures) -> Demonstration:
+    def encode(self, measured: Measures) -> EncodedExample:
         """Encode one pose in these coordinates."""
         height = (
             float(_levels(measured)[0, self.level] - _anchors(measured.view)[self.anchor])
@@ -150,7 +150,7 @@ class RelationalCoordinates:
         tilt = np.zeros(2) if np.linalg.norm(tilt) < FLAT else tilt
         coordinates = np.array([*share, height, *tilt, np.cos(yaw), np.sin(yaw)])
         view = measured.view
-        return Demonstration(coordinates, view.faces.descriptors[measured.face[0]], view.size)
+        return EncodedExample(coordinates, view.faces.descriptors[measured.face[0]], view.size)
 
     def decode(self, view: RegionFrame, face: NDArray[np.intp], coordinates: Array) -> Measures:
         """Decode faces (n,) and coordinates (n, 7) to poses, measured."""

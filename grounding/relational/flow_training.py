@@ -30,7 +30,7 @@ NARROW = 0.02
 
 
 @dataclass(frozen=True)
-class Args:
+class FlowOptions:
     """The flow's training options.
 
     Attributes:
@@ -64,7 +64,7 @@ class FlowNet(nn.Module):
             [COORDINATES + 1 + CONDITION + POOLED, hidden, hidden, COORDINATES]
         )
 
-    def forward(self, x: Tensor, time: Tensor, scenes: Scenes) -> Tensor:
+    def forward(self, x: Tensor, time: Tensor, scenes: SceneBatch) -> Tensor:
         """Compute velocities (n, 7) of samples (n, 7) at times (n, 1)."""
         places = x[:, :2] * scenes.half
         pairs = torch.cat(pair_features(places, scenes.conditions, scenes.around), dim=2)
@@ -82,7 +82,7 @@ class FlowNet(nn.Module):
 
 
 @dataclass(frozen=True, eq=False)
-class Scenes:
+class SceneBatch:
     """A batch of n positive scenes: what is known, what is around (n, m, AROUND), what of it is
     missing, half sizes scaled.
     """
@@ -92,15 +92,17 @@ class Scenes:
     missing: Tensor
     half: Tensor
 
-    def take(self, rows: Tensor) -> Scenes:
+    def take(self, rows: Tensor) -> SceneBatch:
         """Select some of the scenes."""
-        return Scenes(self.conditions[rows], self.around[rows], self.missing[rows], self.half[rows])
+        return SceneBatch(
+            self.conditions[rows], self.around[rows], self.missing[rows], self.half[rows]
+        )
 
 
 def train_flow(
     chart: RelationalCoordinates,
     positive: Sequence[Measures],
-    args: Args = Args(),
+    args: FlowOptions = FlowOptions(),
     progress: Callable[[int, int, float], None] = lambda step, steps, loss: None,
 ) -> dict[str, NDArray[np.float32]]:
     """Train a flow by flow matching; return the arrays of a `Flow`.
@@ -162,11 +164,13 @@ def _scenes(
     conditions: Sequence[NDArray[np.float32]],
     face: Tensor,
     scale: NDArray[np.float32],
-) -> Scenes:
+) -> SceneBatch:
     chosen = np.stack([rows[row] for rows, row in zip(conditions, face.tolist(), strict=True)])
     around, missing = _padded([surroundings(one.view) for one in positive], AROUND)
     half = np.stack([one.view.region.size[:2] / 2 for one in positive]) * scale[:2]
-    return Scenes(torch.tensor(chosen), around, missing, torch.tensor(half, dtype=torch.float32))
+    return SceneBatch(
+        torch.tensor(chosen), around, missing, torch.tensor(half, dtype=torch.float32)
+    )
 
 
 def _padded(rows: Sequence[NDArray[Any]], width: int) -> tuple[Tensor, Tensor]:

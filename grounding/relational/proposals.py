@@ -11,7 +11,7 @@ import numpy as np
 from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
-from grounding.relational.coordinates import Demonstration, RelationalCoordinates
+from grounding.relational.coordinates import EncodedExample, RelationalCoordinates
 from grounding.relational.measures import Measures, RegionFrame
 from tamp.geometric.scene.pose import Array
 
@@ -48,7 +48,7 @@ class Transfer:
             raise ValueError(f"demonstrations of shapes {shapes}")
 
     @classmethod
-    def of(cls, chart: RelationalCoordinates, demonstrations: list[Demonstration]) -> Transfer:
+    def of(cls, chart: RelationalCoordinates, demonstrations: list[EncodedExample]) -> Transfer:
         """Build the transfer from encoded demonstrations."""
         columns = zip(
             *((one.coordinates, one.face, one.size) for one in demonstrations), strict=True

@@ -19,7 +19,7 @@ from grounding.torch_layers import arrays_of, dense_layers, run_layers
 
 
 @dataclass(frozen=True)
-class Args:
+class RankerOptions:
     """The ranker's training options.
 
     Attributes:
@@ -65,7 +65,7 @@ class RankerNet(nn.Module):
 def train_ranker(
     measured: Sequence[Measures],
     holds: NDArray[np.bool_],
-    args: Args = Args(),
+    args: RankerOptions = RankerOptions(),
     progress: Callable[[int, int, float], None] = lambda step, steps, accuracy: None,
 ) -> tuple[dict[str, NDArray[np.float32]], float]:
     """Train the ranker; return its weights, and their accuracy on the validation split.

@@ -12,7 +12,7 @@ from grounding.body_geometry import geometry_of
 from grounding.relation_scene import Placed
 from grounding.relations.demonstration_text import BodyEntry
 from grounding.relations.grounding import LearnedRelation
-from grounding.relations.scenes import Example, loaded, made, otherwise
+from grounding.relations.scenes import DemonstratedBodies, loaded, made, otherwise
 from grounding.separation import Obstacles, separations
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
@@ -51,7 +51,7 @@ class Candidate:
 
 
 def candidates(
-    relation: LearnedRelation, examples: Sequence[Example], count: int, rng: Random,
+    relation: LearnedRelation, examples: Sequence[DemonstratedBodies], count: int, rng: Random,
     near: float = 0.5,
 ) -> list[Candidate]:  # fmt: skip
     """Make scenes and put argument 0 where the relation is proposed, or close to that.

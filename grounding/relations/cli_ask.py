@@ -35,7 +35,7 @@ def ask(chosen: Ask) -> None:
         InputError: Bad demonstrations, or an answer that is none.
     """
     rng = np.random.default_rng(chosen.seed)
-    state = _State.of(chosen.relation.lower(), chosen.demos, rng)
+    state = _Learned.of(chosen.relation.lower(), chosen.demos, rng)
     for line in state.missing():
         print(f"missing: {line}")
 
@@ -79,7 +79,7 @@ def explore_own(name: str, demos: Path, out: Path | None, count: int, seed: int)
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise InputError("it is there already", file=folder, remedy="Name a new folder with --out")
     rng = np.random.default_rng(seed)
-    state = _State.of(name.lower(), demos, rng)
+    state = _Learned.of(name.lower(), demos, rng)
     found = candidates(state.relation, examples_of(state.shown), count, rng)
     for number, one in enumerate(found, 1):
         path, holds = (
@@ -97,7 +97,7 @@ def explore_own(name: str, demos: Path, out: Path | None, count: int, seed: int)
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class _Learned:
     """Demonstrations, and what was learned from them."""
 
     name: str
@@ -107,7 +107,7 @@ class _State:
     situations: Situations
 
     @classmethod
-    def of(cls, name: str, demos: Path, rng: Random) -> _State:
+    def of(cls, name: str, demos: Path, rng: Random) -> _Learned:
         if not demos.exists():
             raise InputError("no demonstrations there", file=demos, remedy="--demos FOLDER")
         shown = list(demonstrations_of(name, [demos]))

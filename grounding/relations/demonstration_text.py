@@ -14,10 +14,11 @@ from typing import Any
 from grounding.relations.demonstration_file import Label
 from tamp.errors import InputError
 from tamp.geometric.loading.bodies import PLACEMENT_KEYS
+from tamp.geometric.loading.declared_places import NAME
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.meshes import find_mesh
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.pose import Pose
 from tamp.system.outputs import write_whole
 
@@ -25,9 +26,6 @@ ROBOT = "{model: panda_mobile, base: [0.0, 0.0, 0 deg]}"
 """Any robot, so that a demonstration is a whole problem file; no relation depends on it."""
 
 ROOM = "{x: [-5.0, 5.0], y: [-5.0, 5.0]}"
-
-NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
-"""What a problem file takes for a name."""
 
 PLAIN = re.compile(r"[A-Za-z_./][A-Za-z0-9_./-]*")
 """Words that need no quotes in YAML, but for those that YAML reads otherwise."""
@@ -114,7 +112,7 @@ def read_entries(path: Path) -> dict[str, BodyEntry]:
     }
 
 
-def _shape(node: Node, folder: Path) -> dict[str, Any]:
+def _shape(node: YamlNode, folder: Path) -> dict[str, Any]:
     entries = {
         key: _plain(value) for key, value in node.mapping().items() if key not in PLACEMENT_KEYS
     }
@@ -123,7 +121,7 @@ def _shape(node: Node, folder: Path) -> dict[str, Any]:
     return entries
 
 
-def _plain(node: Node) -> Any:
+def _plain(node: YamlNode) -> Any:
     """Return words, lists and mappings as they are written."""
     if node.is_list():
         return [_plain(item) for item in node.items()]

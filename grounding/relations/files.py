@@ -13,7 +13,7 @@ from grounding.certainty import REASON
 from grounding.relations.catalogue import catalogue
 from grounding.relations.charts import MODES, Carried
 from grounding.relations.committee import Committee
-from grounding.relations.generator import Generator
+from grounding.relations.generator import PoseGenerator
 from grounding.relations.learner import Learned
 from grounding.weights import Weights
 from tamp.errors import InputError
@@ -59,7 +59,7 @@ def weights_of(learned: Learned, card: Mapping[str, Any]) -> Weights:
     return Weights(arrays, said)
 
 
-def read_learned(weights: Weights) -> tuple[tuple[str, ...], Committee, Generator]:
+def read_learned(weights: Weights) -> tuple[tuple[str, ...], Committee, PoseGenerator]:
     """Return the arguments' kinds, the classifier and the generator of weights.
 
     Raises:
@@ -86,7 +86,7 @@ def read_learned(weights: Weights) -> tuple[tuple[str, ...], Committee, Generato
     if not isinstance(level, int) or abs(level) >= len(kinds) or isinstance(level, bool):
         raise InputError(f"the card's 'level' is {level!r}")
     _check_carried(shown, len(kinds))
-    return tuple(kinds), committee, Generator(ranking, shown, level, bool(card.get("steady")))
+    return tuple(kinds), committee, PoseGenerator(ranking, shown, level, bool(card.get("steady")))
 
 
 def _committee(weights: Weights, prefix: str, arguments: int) -> Committee:

@@ -57,7 +57,7 @@ ANY_WAY = np.zeros((0, 3))
 
 
 @dataclass(frozen=True, eq=False)
-class Generator:
+class PoseGenerator:
     """Proposes where argument 0 goes.
 
     Attributes:
@@ -181,7 +181,9 @@ def level_of(shown: Situations) -> int:
     return min(levels, key=lambda level: missed(level) + 0.002 * levels.index(level))
 
 
-def learned(committee: Committee, shown: Situations, rng: Random, steady: bool = True) -> Generator:
+def learned(
+    committee: Committee, shown: Situations, rng: Random, steady: bool = True
+) -> PoseGenerator:
     """Choose the charts in which carried demonstrations please the committee most."""
     level = level_of(shown)
     listed = charts(shown.arguments)
@@ -194,7 +196,7 @@ def learned(committee: Committee, shown: Situations, rng: Random, steady: bool =
     ]
     agreed = agreement(every, carried(chance(shown, rng, AGREEING), listed))
     best = np.argsort(-(np.array(scores) + AGREED * agreed), kind="stable")[:KEPT]
-    return Generator(committee, every.chosen(best), level, steady)
+    return PoseGenerator(committee, every.chosen(best), level, steady)
 
 
 def _liked(

@@ -11,7 +11,7 @@ from grounding.body_geometry import geometry_of
 from grounding.relation_scene import Placed
 from grounding.relations.committee import Committee
 from grounding.relations.files import read_learned
-from grounding.relations.generator import ANY_WAY, Generator
+from grounding.relations.generator import ANY_WAY, PoseGenerator
 from grounding.relations.situation import Situations, place_row, shape_of, situation_of
 from grounding.separation import Obstacles, separations
 from grounding.weights import Weights
@@ -39,7 +39,7 @@ class LearnedRelation:
     def __init__(self, weights: Weights) -> None:
         self.kinds, self.committee, self.generator = read_learned(weights)
         self._committee: Committee = self.committee
-        self._proposes: Generator = self.generator
+        self._proposes: PoseGenerator = self.generator
 
     def classify(self, scene: Scene, arguments: Sequence[str]) -> float:
         """Return the probability that the relation holds where the bodies are.

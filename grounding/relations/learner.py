@@ -13,7 +13,7 @@ from grounding.body_geometry import geometry_of
 from grounding.relations.committee import Committee, fit
 from grounding.relations.demonstration_file import Demonstration
 from grounding.relations.evidence import RANKING, gather
-from grounding.relations.generator import Generator, learned
+from grounding.relations.generator import PoseGenerator, learned
 from grounding.relations.situation import Situations, joined, situation_of
 from grounding.relations.variety import contradiction
 from tamp.errors import InputError
@@ -77,7 +77,7 @@ class Learned:
     relation: str
     kinds: tuple[str, ...]
     committee: Committee
-    generator: Generator
+    generator: PoseGenerator
     held_out: HeldOut | None
     cannot_tell: str
     count: tuple[int, int]
@@ -128,7 +128,7 @@ def learn(relation: str, shown: Sequence[Demonstration], rng: Random) -> Learned
 
 def trained(
     situations: Situations, holds: NDArray[np.bool_], rng: Random, steady: bool = True
-) -> tuple[Committee, Generator]:
+) -> tuple[Committee, PoseGenerator]:
     """Train classifier and generator."""
     good, bad = np.flatnonzero(holds), np.flatnonzero(~holds)
     positives, negatives = situations.rows(good), situations.rows(bad)

@@ -41,7 +41,7 @@ AIR = 0.01
 
 
 @dataclass(frozen=True)
-class Example:
+class DemonstratedBodies:
     """The bodies of a demonstration.
 
     Attributes:
@@ -61,17 +61,19 @@ class Example:
         return {"arguments": list(self.arguments), "bodies": bodies}
 
 
-def examples_of(shown: Sequence[Demonstration]) -> list[Example]:
+def examples_of(shown: Sequence[Demonstration]) -> list[DemonstratedBodies]:
     """Take the bodies of some demonstrations in which the relation holds."""
     positive = [one for one in shown if one.holds]
     chosen = positive[:: max(1, len(positive) // EXAMPLES)][:EXAMPLES]
     return [
-        Example(one.arguments, read_entries(Path(one.source.rpartition(":")[0].rpartition(":")[0])))
+        DemonstratedBodies(
+            one.arguments, read_entries(Path(one.source.rpartition(":")[0].rpartition(":")[0]))
+        )
         for one in chosen
     ]
 
 
-def read_examples(plain: Any) -> list[Example]:
+def read_examples(plain: Any) -> list[DemonstratedBodies]:
     """Return the examples of a card.
 
     Raises:
@@ -79,7 +81,7 @@ def read_examples(plain: Any) -> list[Example]:
     """
     try:
         return [
-            Example(
+            DemonstratedBodies(
                 tuple(map(str, one["arguments"])),
                 {
                     str(name): BodyEntry(dict(shape), _pose(pose))
@@ -110,7 +112,7 @@ def loaded(bodies: Mapping[str, BodyEntry], arguments: Sequence[str]) -> Scene:
         return load_scene(path, demonstration=True).scene
 
 
-def made(example: Example, rng: Random) -> dict[str, BodyEntry]:
+def made(example: DemonstratedBodies, rng: Random) -> dict[str, BodyEntry]:
     """Make a scene of an example's kind; argument 0 stands somewhere on the furniture.
 
     Raises:

@@ -43,7 +43,7 @@ def read_log(path: Path) -> list[Line]:
     return lines
 
 
-class Log:
+class RunLog:
     """A file of results that is added to, by one process at a time.
 
     Args:
@@ -80,7 +80,7 @@ class Log:
 
         self._logged = {key(line["config"]) for line in self.lines}
 
-    def __enter__(self) -> Log:
+    def __enter__(self) -> RunLog:
         return self
 
     def __exit__(

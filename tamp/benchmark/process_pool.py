@@ -92,7 +92,7 @@ class ProcessPool:
 
     def close(self) -> None:
         """End all workers."""
-        with guard.Held():
+        with guard.HeldSignals():
             for worker in self._workers:
                 worker.process.kill()
             for worker in self._workers:
@@ -101,7 +101,7 @@ class ProcessPool:
     def _hire(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=_serve, args=(theirs, *self._job), daemon=True)
-        with guard.Held():
+        with guard.HeldSignals():
             process.start()
         theirs.close()
         return _Worker(process, ours)

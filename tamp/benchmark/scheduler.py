@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from tamp.benchmark.case import Case
-from tamp.benchmark.log import Log
+from tamp.benchmark.log import RunLog
 from tamp.benchmark.worker_pool import R, WorkerPool
 
 ATTEMPTS = 3
@@ -20,7 +20,7 @@ LOST = "LOST"
 def run_all(
     cases: list[Case],
     pool: WorkerPool[Case],
-    log: Log,
+    log: RunLog,
     ended: Callable[[dict[str, Any], int], None],
 ) -> None:
     """Do all runs that the log does not have. The pool stays.

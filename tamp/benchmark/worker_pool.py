@@ -8,7 +8,7 @@ from typing import Any, Protocol, TypeVar
 from tamp.benchmark.case import Case
 
 
-class Run(Protocol):
+class PoolRun(Protocol):
     """The run that a worker is given; hashable, and it can be sent to another process."""
 
     @property
@@ -17,7 +17,7 @@ class Run(Protocol):
         ...
 
 
-R = TypeVar("R", bound=Run)
+R = TypeVar("R", bound=PoolRun)
 
 Work = Callable[[Case], dict[str, Any]]
 """Does a benchmark's run and returns its line. It is sent to other processes: a function of a

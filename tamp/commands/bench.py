@@ -86,7 +86,7 @@ def _run_all(
 ) -> list[dict[str, Any]]:
     """Check everything, run what is missing, print the tables; all results of the file."""
     from tamp.benchmark.case import cases, named
-    from tamp.benchmark.log import Log
+    from tamp.benchmark.log import RunLog
     from tamp.benchmark.progress import ProgressLine
     from tamp.benchmark.scheduler import run_all
     from tamp.geometric.samplers.choice import sampler_files
@@ -108,7 +108,7 @@ def _run_all(
             read += [*sampler_files(loaded.samplers.values()), *map(Path, sources or {})]
     check_outputs({"--out": chosen.out}, read)
     wanted = cases(problems, samplers, seeds, chosen.time, algorithm, sources)
-    with Log(chosen.out) as log:
+    with RunLog(chosen.out) as log:
         log.check(chosen.time, algorithm)
         missing = log.missing(wanted)
         if missing:

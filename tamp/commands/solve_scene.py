@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 
 from tamp.commands.solve_options import Arguments
-from tamp.commands.solve_values import FollowUp, Judged, Loaded, Planned, Request, Written
+from tamp.commands.solve_values import FollowUp, Judged, Planned, ReadyProblem, Request, Written
 from tamp.commands.solve_verdict import closing_lines, judge_text
 from tamp.errors import InputError
 from tamp.geometric.samplers.choice import sampler_choices, sampler_files
@@ -63,7 +63,7 @@ def solve_scene(request: Request) -> bool | None:
     return judged.holds and (followed.execution is None or followed.execution.reached)
 
 
-def load(request: Request) -> Loaded:
+def load(request: Request) -> ReadyProblem:
     """Load the problem; refuse outputs that would overwrite what it was read from."""
     options, shown = request.options, request.shown
     named = sampler_choices(options.scene.sampler)
@@ -100,10 +100,10 @@ def load(request: Request) -> Loaded:
         problem = replace(problem, stream_task=replace(problem.stream_task, posteriors=statistics))
 
     shown.line(headline(problem))
-    return Loaded(problem, load_again, request.budget.elapsed())
+    return ReadyProblem(problem, load_again, request.budget.elapsed())
 
 
-def plan(request: Request, loaded: Loaded, record: bool) -> Planned:
+def plan(request: Request, loaded: ReadyProblem, record: bool) -> Planned:
     """Plan; of several processes, the first plan that the judge accepts counts."""
     options, shown = request.options, request.shown
     shown.begin("searching")
@@ -130,7 +130,7 @@ def plan(request: Request, loaded: Loaded, record: bool) -> Planned:
     return Planned(solution, guard.asked() or solution.outcome is Outcome.INTERRUPTED)
 
 
-def judge(request: Request, loaded: Loaded, planned: Planned) -> Judged:
+def judge(request: Request, loaded: ReadyProblem, planned: Planned) -> Judged:
     """Ask the independent judge, if that is wanted."""
     options, shown = request.options, request.shown
     solution = planned.solution
@@ -142,7 +142,7 @@ def judge(request: Request, loaded: Loaded, planned: Planned) -> Judged:
     return Judged(verdict, verdict.holds)
 
 
-def write(request: Request, loaded: Loaded, planned: Planned, judged: Judged) -> Written:
+def write(request: Request, loaded: ReadyProblem, planned: Planned, judged: Judged) -> Written:
     """Write the plan first of all: what fails later loses no plan. Then add to the statistics."""
     options, shown = request.options, request.shown
     shown.begin("writing")
@@ -157,7 +157,9 @@ def write(request: Request, loaded: Loaded, planned: Planned, judged: Judged) ->
     return Written(written, None)
 
 
-def follow_up(request: Request, loaded: Loaded, planned: Planned, written: Written) -> FollowUp:
+def follow_up(
+    request: Request, loaded: ReadyProblem, planned: Planned, written: Written
+) -> FollowUp:
     """Look for what would make the problem solvable, or carry the plan out, if that is wanted."""
     options, shown = request.options, request.shown
     because, executed = None, None
@@ -188,7 +190,7 @@ def follow_up(request: Request, loaded: Loaded, planned: Planned, written: Writt
 
 def tell(
     request: Request,
-    loaded: Loaded,
+    loaded: ReadyProblem,
     planned: Planned,
     judged: Judged,
     written: Written,

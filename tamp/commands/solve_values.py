@@ -38,7 +38,7 @@ class Request:
 
 
 @dataclass(frozen=True)
-class Loaded:
+class ReadyProblem:
     """A problem that is ready to be planned.
 
     Attributes:

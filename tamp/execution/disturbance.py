@@ -18,7 +18,7 @@ from tamp.execution.free_space import FreeSpace
 from tamp.execution.motor_commands import TrajectoryPlayer
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Part
-from tamp.plan.read import PlanFile, Segment
+from tamp.plan.read import PlanFile, StoredSegment
 from tamp.simulation.actuation import MotorSimulation
 
 OBSTACLE = "obstacle"
@@ -84,7 +84,7 @@ Moment = tuple[int, int]
 """An action's and a segment's number."""
 
 
-def _moving(plan: PlanFile) -> Iterator[tuple[Moment, Segment]]:
+def _moving(plan: PlanFile) -> Iterator[tuple[Moment, StoredSegment]]:
     for number, action in enumerate(plan.actions):
         for index, segment in enumerate(action.segments):
             if segment.part != "gripper":
@@ -110,7 +110,7 @@ def _before_a_place(plan: PlanFile) -> Iterator[Moment]:
     return (moment for moment, _ in _moving(plan) if moment[0] < last)
 
 
-def _puts(segments: tuple[Segment, ...]) -> bool:
+def _puts(segments: tuple[StoredSegment, ...]) -> bool:
     return any(segment.detach is not None for segment in segments)
 
 

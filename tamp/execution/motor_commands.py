@@ -11,7 +11,7 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
 from tamp.execution.monitoring import EVERY, ContactMonitor
-from tamp.plan.read import Segment
+from tamp.plan.read import StoredSegment
 from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 
 CLOSING = 0.9
@@ -42,7 +42,7 @@ class TrajectoryPlayer:
 
     def play(
         self,
-        segment: Segment,
+        segment: StoredSegment,
         body: str | None,
         watch: ContactMonitor,
         event: Event | None = None,
@@ -82,7 +82,7 @@ class TrajectoryPlayer:
 
     def _follow(
         self,
-        segment: Segment,
+        segment: StoredSegment,
         watch: ContactMonitor,
         event: Event | None,
         at: float,
@@ -118,7 +118,7 @@ class TrajectoryPlayer:
         self._wait(REST, watch)
         return step == count - 1
 
-    def _finger(self, segment: Segment, body: str | None, watch: ContactMonitor) -> None:
+    def _finger(self, segment: StoredSegment, body: str | None, watch: ContactMonitor) -> None:
         world = self._world
         lasts = max(float(segment.times[-1]), CLOSING)
         if segment.detach is not None and world.bound is not None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tamp.errors import InputError
-from tamp.plan.read import PlanFile, Segment
+from tamp.plan.read import PlanFile, StoredSegment
 
 PAUSE = 10.0
 """Seconds that nothing moves in a segment; what is longer is cut."""
@@ -39,7 +39,7 @@ def without_pauses(plan: PlanFile) -> tuple[PlanFile, float]:
     return (replace(plan, actions=tuple(actions)), cut) if cut else (plan, 0.0)
 
 
-def _shortened(segment: Segment, plan: PlanFile) -> Segment:
+def _shortened(segment: StoredSegment, plan: PlanFile) -> StoredSegment:
     spans = np.diff(segment.times, prepend=0.0)
     if (spans < 0.0).any():
         raise InputError(f"times of the {segment.part} do not increase", file=plan.file)

@@ -16,7 +16,7 @@ from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.registry import STREAMS
 from tamp.plan.open import PlanBundle
 from tamp.plan.sources import source_file
-from tamp.relations.observed import Observation, moved, observe
+from tamp.relations.observed import ClassifierAnswers, moved, observe
 from tamp.symbolic.pddl.complement import atoms_of_conditions
 from tamp.symbolic.pddl.relations import (
     SAMPLE,
@@ -47,7 +47,7 @@ class Own:
 
     def observe(
         self, truth: ObservedScene, held: str | None, expected: Expected, at: Mapping[str, str]
-    ) -> dict[str, Observation]:
+    ) -> dict[str, ClassifierAnswers]:
         """Observe what the classifiers say of what is seen, by relation; `at` names the poses of
         bodies that stand.
         """

@@ -10,18 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from tamp.export.trajectory import Stretch, TimedAction, joints_of
+from tamp.export.trajectory import ExportedAction, Stretch, joints_of
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.plan.read import PlanFile
-
-DIGITS = 9
-"""Decimals of the numbers: those of the plan file."""
+from tamp.plan.sources import DECIMALS
 
 NANOSECONDS = 10**9
 
 
-def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def json_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format the actions with their stretches as JSON, times from the plan's start."""
     document = {
         "format": "tamp-trajectory",
@@ -43,7 +41,7 @@ def json_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> s
     return json.dumps(document) + "\n"
 
 
-def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format the trajectory as CSV, one row a sample with all joints, those that stand still too;
     the columns of velocities begin with v_.
     """
@@ -68,7 +66,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
                 holding = stretch.holding or ""
                 writer.writerow(
                     (
-                        round(float(time), DIGITS),
+                        round(float(time), DECIMALS),
                         number,
                         action.name,
                         stretch.part,
@@ -80,7 +78,7 @@ def csv_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     return file.getvalue()
 
 
-def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> str:
+def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[ExportedAction]) -> str:
     """Format trajectory_msgs/JointTrajectory messages as JSON, one a stretch in the order in which
     they are to be sent.
 
@@ -93,7 +91,7 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
             "name": action.name,
             "arguments": action.arguments,
             "controller": stretch.part,
-            "start": round(float(stretch.times[0]), DIGITS),
+            "start": round(float(stretch.times[0]), DECIMALS),
             "holding": stretch.holding,
             "attach": stretch.attach,
             "detach": stretch.detach,
@@ -111,7 +109,7 @@ def ros_text(plan: PlanFile, robot: Robot, actions: Sequence[TimedAction]) -> st
     )
 
 
-FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[TimedAction]], str]] = {
+FORMATS: dict[str, Callable[[PlanFile, Robot, Sequence[ExportedAction]], str]] = {
     "json": json_text,
     "csv": csv_text,
     "ros": ros_text,
@@ -183,4 +181,4 @@ def _message(stretch: Stretch) -> dict[str, Any]:
 
 
 def _rounded(row: Array) -> list[float]:
-    return [round(float(number), DIGITS) + 0.0 for number in row]
+    return [round(float(number), DECIMALS) + 0.0 for number in row]

@@ -8,8 +8,7 @@ import numpy as np
 
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
-from tamp.plan.read import PlanFile
-from tamp.plan.read import Segment as StoredSegment
+from tamp.plan.read import PlanFile, StoredSegment
 
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 """What the base's coordinates in the world are called: metres, metres, radians. Whole turns of the
@@ -42,7 +41,7 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
-class TimedAction:
+class ExportedAction:
     """An action and its stretches, in order; `start` and `duration` in seconds."""
 
     name: str
@@ -69,10 +68,10 @@ def part_of(robot: Robot, part: str, arm: str | None) -> str:
     return f"{arm or robot.arm}_{part}"
 
 
-def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
+def timed_actions(plan: PlanFile, robot: Robot) -> tuple[ExportedAction, ...]:
     """Time the plan's motions from the plan's start."""
     joints = joints_of(robot)
-    actions: list[TimedAction] = []
+    actions: list[ExportedAction] = []
     for action in plan.actions:
         clock = action.start
         stretches: list[Stretch] = []
@@ -81,7 +80,7 @@ def timed_actions(plan: PlanFile, robot: Robot) -> tuple[TimedAction, ...]:
             stretches.append(_stretch(segment, part, joints[part], clock))
             clock += float(segment.times[-1])
         actions.append(
-            TimedAction(
+            ExportedAction(
                 action.name, action.arguments, action.start, action.duration, tuple(stretches)
             )
         )

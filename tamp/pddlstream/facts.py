@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from tamp.errors import InputError, closest
 from tamp.symbolic.algorithms.bound_stream import value_key
+from tamp.symbolic.pddl.formulas import CONNECTIVES
 from tamp.symbolic.pddl.structs import (
     And,
     Atom,
@@ -23,7 +24,6 @@ from tamp.symbolic.pddl.structs import (
 )
 
 _WORD = re.compile(r"[A-Za-z][\w-]*")
-CONNECTIVES = ("and", "or", "not", "imply", "exists", "forall")
 
 
 class Names:

@@ -24,7 +24,7 @@ PARTS = ("base", "arm", "gripper")
 
 
 @dataclass(frozen=True)
-class Source:
+class PlanSource:
     """A file that the plan was made from: role ("problem", "domain", "mesh"), place and SHA-256."""
 
     role: str
@@ -45,7 +45,7 @@ class Hold:
 
 
 @dataclass(frozen=True, eq=False)
-class Segment:
+class StoredSegment:
     """A stretch of one part's motion, linear between its samples.
 
     Attributes:
@@ -91,7 +91,7 @@ class TimedAction:
     start: float
     duration: float
     cost: float
-    segments: tuple[Segment, ...]
+    segments: tuple[StoredSegment, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +99,7 @@ class PlanFile:
     """A plan. `robot_given`: its robot was given beside the problem, which names another one."""
 
     file: Path | None
-    sources: tuple[Source, ...]
+    sources: tuple[PlanSource, ...]
     robot: str
     objects: Mapping[str, tuple[str, ...]]
     initial: tuple[Fact, ...]
@@ -113,7 +113,7 @@ class PlanFile:
     robot_given: bool = False
     samplers: Mapping[str, str] = dataclasses.field(default_factory=dict[str, str])
 
-    def source(self, role: str) -> Source | None:
+    def source(self, role: str) -> PlanSource | None:
         """Return the file of that role."""
         return next((source for source in self.sources if source.role == role), None)
 
@@ -166,7 +166,7 @@ def _options(options: Field | None) -> dict[str, Any]:
     }
 
 
-def _sources(inputs: Field) -> tuple[Source, ...]:
+def _sources(inputs: Field) -> tuple[PlanSource, ...]:
     lists = {"meshes": "mesh", "robot": "robot"}
     sources = [_source(role, field) for role, field in inputs.fields().items() if role not in lists]
     for key, role in lists.items():
@@ -177,11 +177,11 @@ def _sources(inputs: Field) -> tuple[Source, ...]:
     return tuple(sources)
 
 
-def _source(role: str, field: Field) -> Source:
+def _source(role: str, field: Field) -> PlanSource:
     sha256 = field["sha256"].text()
     if len(sha256) != 64 or not set(sha256) <= set("0123456789abcdef"):
         raise field["sha256"].wrong("64 hexadecimal digits are expected")
-    return Source(role, Path(field["path"].text()), sha256)
+    return PlanSource(role, Path(field["path"].text()), sha256)
 
 
 def _names(field: Field) -> tuple[str, ...]:
@@ -251,7 +251,7 @@ def _action(field: Field) -> TimedAction:
     )
 
 
-def _segment(field: Field) -> Segment:
+def _segment(field: Field) -> StoredSegment:
     part, arm = field["part"].text(PARTS), _arm(field)
     times = field["times"].numbers()
     if len(times) == 0:
@@ -269,7 +269,7 @@ def _segment(field: Field) -> Segment:
             hold = Hold(attach["body"].text(), T_tool_body, float(opening[-1]), tuple(load))
         positions = np.empty((len(times), 0))
         let_go = detach.text() if detach else None
-        return Segment(part, times, positions, opening, None, hold, let_go, arm)
+        return StoredSegment(part, times, positions, opening, None, hold, let_go, arm)
 
     positions = field["positions"].rows(WIDTHS[part])
     if len(positions) != len(times):
@@ -278,7 +278,7 @@ def _segment(field: Field) -> Segment:
     opening = np.full(len(times), field["opening"].number())
     holding = field.get("holding")
     held = holding.text() if holding else None
-    return Segment(part, times, positions, opening, held, arm=arm)
+    return StoredSegment(part, times, positions, opening, held, arm=arm)
 
 
 def _check_bodies(root: Field, plan: PlanFile) -> None:

@@ -13,6 +13,9 @@ from tamp.plan.violation import Violation
 from tamp.system.files import find_domain, find_problem
 from tamp.system.reading import is_file
 
+DECIMALS = 9
+"""Of the numbers in a plan file: nanometres."""
+
 MOST_HASHED = 1_000_000_000
 """Bytes of the largest file that a plan may have been made from."""
 

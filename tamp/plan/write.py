@@ -13,6 +13,7 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Reach
 from tamp.geometric.values import Path as Polyline
 from tamp.plan.inputs import inputs_document
+from tamp.plan.sources import DECIMALS
 from tamp.planner.recorder import Sample
 from tamp.planner.solution import Action, Solution
 from tamp.planner.timed_trajectories import Segment
@@ -22,9 +23,6 @@ from tamp.system.outputs import write_whole
 
 PACKAGES = ("numpy", "numba", "ompl", "python-fcl", "pin", "EAIK")
 """Those whose versions can change a plan."""
-
-DIGITS = 9
-"""Decimals of the numbers in a plan file: nanometres."""
 
 
 def plan_document(solution: Solution) -> dict[str, Any]:
@@ -234,7 +232,7 @@ def _pose(pose: Pose) -> dict[str, list[float]]:
 
 def rounded(number: float) -> float:
     """Round a number as plan files have it."""
-    return round(float(number), DIGITS) + 0.0
+    return round(float(number), DECIMALS) + 0.0
 
 
 def _numbers(row: Array) -> list[float]:

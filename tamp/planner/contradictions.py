@@ -14,12 +14,12 @@ from tamp.symbolic.algorithms.result import Result
 from tamp.symbolic.pddl.relations import Relation
 from tamp.symbolic.pddl.structs import Action, And, Domain, Fact
 
-MOST = 3
+MAX_CONTRADICTIONS_TOLD = 3
 """Contradictions that are told."""
 
 
 @dataclass(frozen=True)
-class _State:
+class _StandingPoses:
     """The poses' names by the names of bodies that stand, after so many actions; PDDL's names."""
 
     number: int
@@ -53,17 +53,17 @@ def contradictions(problem: Problem, result: Result) -> tuple[Cause, ...]:
                 objects = problem.stream_task.named(words)
                 found.append(Cause(text, CauseKind.CONTRADICTED, objects))
 
-    return distinct_causes(found)[:MOST]
+    return distinct_causes(found)[:MAX_CONTRADICTIONS_TOLD]
 
 
-def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_State]:
+def _states(domain: Domain, initial: Collection[Fact], result: Result) -> list[_StandingPoses]:
     """List the states after each action, as far as its effects say plainly where bodies stand."""
     at = {fact[1]: fact[2] for fact in initial if fact[0] == "at-pose" and len(fact) == 3}
     actions = {action.name: action for action in domain.actions}
-    states: list[_State] = []
+    states: list[_StandingPoses] = []
     for number, ground in enumerate(result.actions, 1):
         at = _after(actions[ground.name], ground.arguments, at)
-        states.append(_State(number, at))
+        states.append(_StandingPoses(number, at))
     return states
 
 
@@ -88,7 +88,7 @@ def _otherwise(
     problem: Problem,
     relation: Relation,
     classifier: Classifier,
-    state: _State,
+    state: _StandingPoses,
     stated: Collection[Fact],
     values: Mapping[str, object],
 ) -> list[tuple[str, ...]]:

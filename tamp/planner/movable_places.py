@@ -33,13 +33,13 @@ ANCHORED = "anchored"
 PORTABLE = "portable"
 """(portable ?o): the goal wants ?o somewhere, and it may be carried there with what is on it."""
 
-NARROWEST = 0.02
+MIN_PLACE_WIDTH_M = 0.02
 """Metres: nothing is stacked on a top that is narrower."""
 
 WANTED = "wanted-"
 """(wanted-R ?o ?o2): the goal, or an action, may want R of these; only then is it sampled."""
 
-RELATIONS = ("on", "inside")
+PLACE_RELATIONS = ("on", "inside")
 """Those whose second argument is a place."""
 
 
@@ -64,7 +64,7 @@ def _topped(body: Body) -> Body:
     if not body.movable or declared or (hulls and len(body.parts) > 1):
         return body
     top = top_of(body.name, body.parts, body.pose)
-    if top is None or min(top.size) < NARROWEST:
+    if top is None or min(top.size) < MIN_PLACE_WIDTH_M:
         return body
     return replace(body, surfaces=(top,))
 
@@ -120,7 +120,7 @@ def _is_tray(body: str, wanted: Collection[tuple[str, str]], scene: Scene) -> bo
 def _wanted(goal: Formula, domain: Domain) -> Iterator[tuple[str | None, str | None]]:
     """Yield bodies and places that a goal relates; None for any."""
     for atom in _atoms(goal):
-        if atom.predicate in RELATIONS and len(atom.terms) == 2:
+        if atom.predicate in PLACE_RELATIONS and len(atom.terms) == 2:
             body, place = (None if term.startswith("?") else term for term in atom.terms)
             yield body, place
         elif WANTED + atom.predicate in domain.predicates:
@@ -173,7 +173,7 @@ def circle(goal: Formula, scene: Scene) -> tuple[str, ...]:
     below: dict[str, set[str]] = {}
     parts: Collection[Formula] = goal.parts if isinstance(goal, And) else (goal,)
     for part in parts:
-        if isinstance(part, Atom) and part.predicate in RELATIONS and len(part.terms) == 2:
+        if isinstance(part, Atom) and part.predicate in PLACE_RELATIONS and len(part.terms) == 2:
             body, place = part.terms
             below.setdefault(body, set()).add(owner.get(place, place))
 

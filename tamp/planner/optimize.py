@@ -25,10 +25,10 @@ from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchSta
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Interrupter
 
-LEAST = 1e-3
+MIN_IMPROVEMENT_SHARE = 1e-3
 """The part by which the motion must be shorter to count as an improvement."""
 
-MANY = 20_000
+MAX_TIMED_PATHS = 20_000
 """Timed paths that are kept."""
 
 
@@ -71,7 +71,7 @@ def optimize(
 
     def better(result: Result) -> bool:
         began = deadline.elapsed()
-        if len(cache) > MANY:
+        if len(cache) > MAX_TIMED_PATHS:
             cache.clear()
         plan = with_trajectories(problem, result, cache)
 
@@ -124,7 +124,7 @@ def improves(new: Solution, old: Solution) -> bool:
         return new.cost < old.cost
     if len(new.plan) != len(old.plan):
         return len(new.plan) < len(old.plan)
-    return new.duration < (1.0 - LEAST) * old.duration
+    return new.duration < (1.0 - MIN_IMPROVEMENT_SHARE) * old.duration
 
 
 def _frozen(result: Result) -> Result:

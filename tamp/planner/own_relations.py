@@ -18,7 +18,7 @@ from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.user_relations import fails_relation
 from tamp.planner.served import Served
-from tamp.relations.observed import Observation, moved, observe, refuse_silent
+from tamp.relations.observed import ClassifierAnswers, moved, observe, refuse_silent
 from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.complement import atoms_of_conditions, complement_name, with_complements
@@ -32,12 +32,12 @@ from tamp.symbolic.pddl.relations import (
 )
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula, StreamFile
 
-REMEDY = (
+CLASSIFIER_REMEDY = (
     "Give it a classifier: --sampler {0}=FILE.py with classify, "
     "or weights of 100 labels, some of them negative"
 )
 
-MOST = 3
+MAX_ARGUMENTS_TOLD = 3
 """Arguments that a warning about a classifier names."""
 
 
@@ -159,7 +159,7 @@ def _observed(
     objects: Mapping[str, tuple[str, ...]],
     facts: Collection[Fact],
     context: Context,
-) -> Observation:
+) -> ClassifierAnswers:
     at = {fact[1]: fact[2] for fact in facts if fact[0] in (POSE, "at-pose") and len(fact) == 3}
     held = context.holding
     scene = moved(context.scene, {}, () if held is None else (held.body,))
@@ -182,7 +182,7 @@ def _refuse_unknown(relation: Relation, domain: Domain, goal: Formula, why: str 
         file=place.file if place else None,
         line=place.line if place else None,
         column=place.column if place else None,
-        remedy=REMEDY.format(name),
+        remedy=CLASSIFIER_REMEDY.format(name),
     )
 
 
@@ -198,10 +198,10 @@ def _check_poses(relation: Relation, domain: Domain) -> None:
         )
 
 
-def _odd(relation: Relation, seen: Observation) -> list[str]:
+def _odd(relation: Relation, seen: ClassifierAnswers) -> list[str]:
     """Warn of a classifier that failed, or that ignores the place that it is asked about."""
     found: list[str] = []
-    for words, why in list(seen.unanswered.items())[:MOST]:
+    for words, why in list(seen.unanswered.items())[:MAX_ARGUMENTS_TOLD]:
         said = " ".join((relation.name, *words))
         found.append(
             f"whether ({said}) holds at the start is not known: "

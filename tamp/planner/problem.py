@@ -12,7 +12,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.loading.load import LoadedProblem
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
-from tamp.geometric.motion.planners import COMPILED, PLANNERS
+from tamp.geometric.motion.planners import COMPILED, PLANNERS, STEERINGS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
 from tamp.geometric.samplers.registry import SAMPLERS
@@ -31,10 +31,6 @@ from tamp.symbolic.pddl.lint import lint
 from tamp.symbolic.pddl.relations import Relation
 from tamp.symbolic.pddl.structs import Task
 from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
-
-STEERINGS = ("se2", "reeds-shepp", "differential")
-"""How the base may move: in any direction, like a car, or turning on the spot and straight ahead.
-"""
 
 
 @dataclass(frozen=True)

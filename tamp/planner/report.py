@@ -15,17 +15,17 @@ from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.pddl.structs import And
 
-WIDTH = 110
+LINE_COLUMNS = 110
 """Columns of the longest line that is not wrapped."""
 
-MOST = 8
+MAX_FAILURE_LINES = 8
 """Lines about what failed."""
 
 SUPPORT_PREDICATES = ("supported", "contained")
 """Predicates that say where a body is; one of the user's may speak of a place where it is not."""
 
 
-APART = ("search", "timing", "explaining", "other tries")
+NOT_STREAM_PARTS = ("search", "timing", "explaining", "other tries")
 """Parts of the time that are no streams'."""
 
 
@@ -90,7 +90,7 @@ def _no_plan(solution: Solution, total: float) -> list[str]:
 
 def _tried(solution: Solution) -> list[str]:
     """List what failed most, by action and stream, in columns."""
-    rows = [tally for tally in solution.tallies if tally.failures][:MOST]
+    rows = [tally for tally in solution.tallies if tally.failures][:MAX_FAILURE_LINES]
     if not rows:
         return []
     title = "what was tried for"
@@ -176,7 +176,7 @@ def _effort(solution: Solution, loading: float) -> list[str]:
     kinds = {one.name: one.kind for one in solution.problem.stream_task.streams}
     parts: dict[str, float] = {}
     for name, seconds in solution.seconds.items():
-        part = name if name in APART else kinds.get(name, StreamKind.OTHER).value
+        part = name if name in NOT_STREAM_PARTS else kinds.get(name, StreamKind.OTHER).value
         if name != "total":
             parts[part] = parts.get(part, 0.0) + seconds
 
@@ -233,7 +233,7 @@ def _listed(label: str, items: Iterable[str], first: str = "") -> list[str]:
     """Wrap items after a label, perhaps with something before a colon."""
     lines = textwrap.wrap(
         "\u00a0· ".join(items),
-        WIDTH,
+        LINE_COLUMNS,
         initial_indent=f"  {label:<9}{f'{first}: ' if first else ''}",
         subsequent_indent=" " * 11,
         break_long_words=False,

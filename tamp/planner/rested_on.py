@@ -12,7 +12,7 @@ from tamp.symbolic.pddl.structs import Atom, Domain, Stream, StreamFile
 SUPPORTED = "supported"
 """(supported ?o ?p ?s): what `on` follows from in domains with scenes."""
 
-SAID = {SUPPORTED, "contained", "borne"}
+RESTING_PREDICATES = {SUPPORTED, "contained", "borne"}
 """Facts by which a stream says itself on what its poses rest."""
 
 
@@ -53,7 +53,7 @@ def _saying(stream: Stream) -> Stream:
         for atom in stream.certified
         if atom.predicate == "pose" and atom.terms[1:] == stream.outputs
     ]
-    said = SAID.intersection(atom.predicate for atom in stream.certified)
+    said = RESTING_PREDICATES.intersection(atom.predicate for atom in stream.certified)
     if said or len(places) != 1 or surfaces != places or len(poses) != 1:
         return stream
     fact = Atom(SUPPORTED, (*poses[0].terms, places[0]))

@@ -19,7 +19,7 @@ from tamp.geometric.samplers.choice import (
 )
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
-from tamp.geometric.scene.classifier import Classifier, Undecided
+from tamp.geometric.scene.classifier import Classifier, NoClassifier
 from tamp.geometric.streams.user_relations import sample_relation, test_relation
 from tamp.symbolic.pddl.relations import SAMPLES, TESTS, relation_of
 from tamp.symbolic.pddl.structs import Domain, Stream, StreamFile
@@ -103,7 +103,7 @@ class Served:
             {
                 relation: item.cannot_tell
                 for relation, item in judging.items()
-                if isinstance(item, Undecided)
+                if isinstance(item, NoClassifier)
             },
         )
 

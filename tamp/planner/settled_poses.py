@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from tamp.planner.movable_places import PORTABLE, RELATIONS
+from tamp.planner.movable_places import PLACE_RELATIONS, PORTABLE
 from tamp.symbolic.pddl.atoms import necessary_atoms
 from tamp.symbolic.pddl.structs import Domain, Fact, Formula
 
@@ -23,7 +23,7 @@ UNBOUND = "unbound"
 MEANT = "meant"
 """(meant ?o ?place): the goal wants ?o on or in this place."""
 
-ADVICE = (SETTLED, UNBOUND, MEANT)
+GOAL_PREDICATES = (SETTLED, UNBOUND, MEANT)
 """Predicates that speak of the goal, and not of the world."""
 
 
@@ -46,13 +46,13 @@ def settled_facts(
         now: Whether actions ask for such relations, too: then a body is wanted near another one
             before that is where it stays.
     """
-    if not {*ADVICE} <= domain.predicates.keys():
+    if not {*GOAL_PREDICATES} <= domain.predicates.keys():
         return set()
     bound: set[str] = set()
     found: set[Fact] = set()
     for atom in () if now else necessary_atoms(goal):
         words = (atom.predicate, *atom.terms)
-        if atom.predicate in RELATIONS and len(atom.terms) == 2 and words[1] in movable:
+        if atom.predicate in PLACE_RELATIONS and len(atom.terms) == 2 and words[1] in movable:
             found.add((MEANT, *atom.terms))
             bound.add(words[1])
         elif words in wanted:

@@ -14,10 +14,10 @@ from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp, Grip, Load, Motion, Path, Stance
 from tamp.symbolic.algorithms.result import PlanAction
 
-GRIP_TIME = 0.5
+GRIP_DURATION_S = 0.5
 """Seconds that the fingers take to open or close, at least."""
 
-GENTLE = 0.5
+LOADED_SPEED_SHARE = 0.5
 """Share of the robot's velocities, and its square of the accelerations, at which it carries a body
 with others on it."""
 
@@ -155,7 +155,7 @@ class PlanTimer:
 
         positions = np.array(grip.opening)[:, None]
         way, speed = abs(grip.opening[1] - grip.opening[0]), 2 * context.robot.finger_speed
-        times = np.array([0.0, max(GRIP_TIME, way / speed if way else 0.0)])
+        times = np.array([0.0, max(GRIP_DURATION_S, way / speed if way else 0.0)])
         return Segment(
             "gripper", times, positions, grip.opening[1], None, grip.attach, grip.detach, grip.load,
             grip.arm,
@@ -185,7 +185,7 @@ class PlanTimer:
             context = context.loaded(held.body, self._load)
         attachment = None if held is None else context.attachment(held)
         arrangement = context.collisions.arrangement(self._poses, attachment)
-        pace = GENTLE if self._load else 1.0
+        pace = LOADED_SPEED_SHARE if self._load else 1.0
         velocity = pace * np.array(robot.velocity)
         acceleration = pace**2 * np.array(robot.acceleration)
 

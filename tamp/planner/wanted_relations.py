@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 
 from tamp.planner.movable_places import WANTED
-from tamp.planner.settled_poses import ADVICE, SETTLED, settled_facts
+from tamp.planner.settled_poses import GOAL_PREDICATES, SETTLED, settled_facts
 from tamp.symbolic.pddl.atoms import necessary_atoms, signed_atoms
 from tamp.symbolic.pddl.relations import (
     Relation,
@@ -33,7 +33,7 @@ def advice(domain: Domain) -> frozenset[str]:
         for sort in (WANTED, ALSO)
         if predicate.startswith(sort) and WANTED + predicate.removeprefix(sort) in domain.predicates
     }
-    return frozenset(told.union(ADVICE if SETTLED in domain.predicates else ()))
+    return frozenset(told.union(GOAL_PREDICATES if SETTLED in domain.predicates else ()))
 
 
 def wanted_facts(

@@ -20,7 +20,7 @@ from tamp.symbolic.pddl.structs import Domain, Fact
 
 
 @dataclass(frozen=True)
-class Observation:
+class ClassifierAnswers:
     """The answers of a classifier about a relation.
 
     Attributes:
@@ -44,7 +44,7 @@ def observe(
     objects: Mapping[str, tuple[str, ...]],
     facts: Collection[Fact],
     at: Mapping[str, str],
-) -> Observation:
+) -> ClassifierAnswers:
     """Ask a classifier of everything in a scene that its relation may be about.
 
     Args:
@@ -72,7 +72,7 @@ def observe(
             (holds if answers[words] >= LIKELY_PROBABILITY else fails).update(
                 relation.substitute(bound, at)
             )
-    return Observation(frozenset(holds), frozenset(fails), unanswered, answers)
+    return ClassifierAnswers(frozenset(holds), frozenset(fails), unanswered, answers)
 
 
 def scene_names(scene: Scene) -> dict[str, str]:
@@ -90,7 +90,7 @@ def moved(scene: Scene, poses: Mapping[str, Pose], absent: Collection[str] = ())
     return replace(scene, bodies=bodies)
 
 
-def refuse_silent(relation: str, seen: Observation) -> None:
+def refuse_silent(relation: str, seen: ClassifierAnswers) -> None:
     """Refuse a classifier that answered nothing that it was asked.
 
     Raises:

@@ -33,6 +33,9 @@ from tamp.system.quick_typing import (
     type_operators_once,
 )
 
+INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of functions that only compiled code calls: they are kept with those that call them."""
+
 NOWHERE = (
     "compiled kernels cannot be kept: {why}. They are compiled anew in each run; "
     "NUMBA_CACHE_DIR names a folder"

@@ -11,7 +11,8 @@ from tamp.system.outputs import check_writable as check_writable
 from tamp.system.outputs import write_whole as write_whole
 
 _PACKAGE = Path(__file__).resolve().parent.parent
-_STREAMS = ".streams.pddl"
+STREAMS_SUFFIX = ".streams.pddl"
+"""What a domain's streams file ends with, beside the domain."""
 
 
 def shipped(folder: str) -> Path:
@@ -78,5 +79,5 @@ def _find(
 def _names(folder: str, suffix: str) -> list[str]:
     files = shipped(folder).glob(f"*{suffix}")
     return sorted(
-        file.name.removesuffix(suffix) for file in files if not file.name.endswith(_STREAMS)
+        file.name.removesuffix(suffix) for file in files if not file.name.endswith(STREAMS_SUFFIX)
     )

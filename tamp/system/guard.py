@@ -122,7 +122,7 @@ def obey_only_parent() -> None:
         die_with(leader.pid)
 
 
-class Held:
+class HeldSignals:
     """Hold signals back while a process is started: what is raised in a fork is dropped, and the
     new process is not ready to be asked. Use it as a context manager.
     """

@@ -86,7 +86,7 @@ def race(
             process = context.Process(
                 target=_member, args=(run, number, theirs, lifeline, held), daemon=True
             )
-            with guard.Held():
+            with guard.HeldSignals():
                 process.start()
             theirs.close()
             processes.append(process)
@@ -119,7 +119,7 @@ def race(
                 answers[number] = content
 
     finally:
-        with guard.Held():
+        with guard.HeldSignals():
             for process in processes:
                 process.kill()
             for process in processes:

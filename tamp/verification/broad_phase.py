@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
-from tamp.verification.trajectory_sampling import Motion
+from tamp.verification.trajectory_sampling import SampledMotion
 
 ROUNDED = 0.0025
 """Metres by which an engine's distances may be wrong: pybullet's are at edges, by up to 1.5 mm."""
@@ -56,7 +56,7 @@ def radius(solids: Sequence[Solid]) -> float:
 
 
 def near_still(
-    motion: Motion, still: Still, within: Array
+    motion: SampledMotion, still: Still, within: Array
 ) -> Iterator[tuple[int, int, int, float]]:
     """Yield states, movers and pieces at rest whose boxes come nearer than asked for.
 
@@ -83,7 +83,7 @@ def near_still(
         yield state, mover, piece, bound
 
 
-def near_itself(motion: Motion, pairs: Pairs) -> Iterator[tuple[int, int]]:
+def near_itself(motion: SampledMotion, pairs: Pairs) -> Iterator[tuple[int, int]]:
     """Yield states and pairs (k, 2) of movers whose boxes meet, where the robot's shape changes."""
     low, high = motion.swept
     first, second = pairs.T

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from tamp.errors import InputError
-from tamp.geometric.scene.classifier import Classifier, Undecided
+from tamp.geometric.scene.classifier import Classifier, NoClassifier
 from tamp.system.python_object import python_object
 
 SAMPLER_MODES = (":mixed", ":alone")
@@ -33,7 +33,7 @@ def classifiers_of(pairs: Iterable[str]) -> dict[str, Classifier]:
             name = name.removesuffix(mode)
         made = _made(relation.lower(), Path(name))
 
-        if isinstance(made, Undecided):
+        if isinstance(made, NoClassifier):
             raise InputError(
                 f"the classifier of '{relation}' cannot tell yet: {made.cannot_tell}", file=name
             )

@@ -21,7 +21,7 @@ from tamp.verification.broad_phase import (
     radius,
 )
 from tamp.verification.execution_state import Held, carried
-from tamp.verification.trajectory_sampling import Motion, Sampler
+from tamp.verification.trajectory_sampling import SampledMotion, Sampler
 
 MAX_PENETRATION_M = 0.001
 """Metres of penetration that are not yet a collision."""
@@ -34,7 +34,7 @@ SAMPLES_PER_BLOCK = 512
 
 
 @dataclass(frozen=True)
-class Contact:
+class PairDistance:
     """Two things at a distance (m, negative when they penetrate) at a time (s)."""
 
     first: str
@@ -68,14 +68,14 @@ class CollisionFindings:
     asks after the nearest miss.
     """
 
-    worst: dict[tuple[str, str], Contact] = field(default_factory=dict)
-    nearest: Contact | None = None
+    worst: dict[tuple[str, str], PairDistance] = field(default_factory=dict)
+    nearest: PairDistance | None = None
     states: int = 0
     most: float = math.inf
     clearance: bool = True
 
     def record(
-        self, contact: Contact, unexpected: bool, tolerance: float = MAX_PENETRATION_M
+        self, contact: PairDistance, unexpected: bool, tolerance: float = MAX_PENETRATION_M
     ) -> None:
         """Take note of a contact or near miss."""
         pair = (contact.first, contact.second)
@@ -194,7 +194,7 @@ class Sweeper:
 
     def _against_bodies(
         self,
-        motion: Motion,
+        motion: SampledMotion,
         held: Sequence[Held],
         findings: CollisionFindings,
         still: Still,
@@ -217,7 +217,9 @@ class Sweeper:
             first, second = movers[mover], still.solids[other]
             distance = advancement.distance(pair, (first, second), way, reach)
             if distance < CLEARANCE_RANGE_M:
-                contact = Contact(first.owner, second.owner, distance, float(motion.times[state]))
+                contact = PairDistance(
+                    first.owner, second.owner, distance, float(motion.times[state])
+                )
                 tolerance = max(
                     MAX_PENETRATION_M,
                     self.together.get(_sorted(first.owner, second.owner), 0.0) + DEEPENING_M,
@@ -226,7 +228,7 @@ class Sweeper:
 
     def _against_itself(
         self,
-        motion: Motion,
+        motion: SampledMotion,
         held: Sequence[Held],
         findings: CollisionFindings,
         advancement: Advancement,
@@ -246,7 +248,9 @@ class Sweeper:
             distance = advancement.distance((i, j), (movers[i], movers[j]), way, 0.0)
             if distance < 0:
                 time = float(motion.times[state])
-                findings.record(Contact(movers[i].owner, movers[j].owner, distance, time), False)
+                findings.record(
+                    PairDistance(movers[i].owner, movers[j].owner, distance, time), False
+                )
 
     def _pairs_of_held(
         self, movers: Sequence[Solid], held: Sequence[Held]
@@ -263,7 +267,7 @@ class Sweeper:
             yield from ((k, i) for i in range(first) if self._names[i] not in own)
             yield from ((k, i) for i in range(first, k) if arms[movers[i].owner] != arms[body])
 
-    def _pose(self, motion: Motion, state: int, held: Sequence[Held]) -> None:
+    def _pose(self, motion: SampledMotion, state: int, held: Sequence[Held]) -> None:
         row = motion.rows[state]
         self._world.set_state(row)
         piece = len(self._solids)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from tamp.geometric.scene.pose import Array
-from tamp.plan.read import Segment
+from tamp.plan.read import StoredSegment
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def carried(held: Iterable[Held]) -> list[Held]:
     return [one for hand in held for one in hand.all]
 
 
-def follow(row: Array, segment: Segment, where: slice) -> None:
+def follow(row: Array, segment: StoredSegment, where: slice) -> None:
     """Write where a segment ends into the robot's row; `where`: the columns of its arm."""
     arm = range(where.start, where.stop - 1)
     columns: dict[str, Sequence[int]] = {"base": range(3), "arm": arm, "gripper": ()}

@@ -14,7 +14,7 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.states import arm_of
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
-from tamp.plan.read import PlanFile, Segment
+from tamp.plan.read import PlanFile, StoredSegment
 from tamp.verification.makers_limits import limits_of
 
 RANGE_TOLERANCE = 1e-4
@@ -43,7 +43,7 @@ class LimitViolation:
 
 
 def limit_violations(
-    segments: Sequence[Segment], robot: Robot, room: Room
+    segments: Sequence[StoredSegment], robot: Robot, room: Room
 ) -> Iterator[LimitViolation]:
     """Yield each limit's worst excess in segments of a part that starts and ends at rest."""
     part, robot = segments[0].part, arm_of(robot, segments[0].arm)
@@ -153,12 +153,12 @@ def check_ranges(plan: PlanFile, robot: Robot, room: Room) -> None:
             offset += sum(float(segment.times[-1]) for segment in segments)
 
 
-def moving_part(segment: Segment) -> tuple[str, str | None]:
+def moving_part(segment: StoredSegment) -> tuple[str, str | None]:
     """Return which part of the robot a segment moves, and of which arm."""
     return segment.part, segment.arm
 
 
-def _joined(segments: Sequence[Segment]) -> tuple[Array, Array]:
+def _joined(segments: Sequence[StoredSegment]) -> tuple[Array, Array]:
     """Join times and rows of segments one after the other; the gripper's row is its opening."""
     times, rows = [], []
     offset = 0.0

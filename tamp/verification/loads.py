@@ -15,7 +15,7 @@ from tamp.verification.execution_state import ExecutionState, Held, carried
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_relations import SupportRelations
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 LOADED_TILT_RAD = math.radians(12.0)
 """Radians by which a body may lean while others stand on it."""
@@ -30,7 +30,7 @@ class Loads:
         world: World,
         semantics: Semantics,
         supports: SupportRelations,
-        log: Log,
+        log: ViolationLog,
     ) -> None:
         self._plan, self._world, self._supports, self._log = plan, world, supports, log
         self._bodies = {name.lower(): name for name in world.scene.bodies}

@@ -17,10 +17,10 @@ from tamp.symbolic.pddl.relations import Relation, instances
 from tamp.symbolic.pddl.structs import Domain, Fact
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import State
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 
-class Relations:
+class ObservedRelations:
     """Puts what classifiers say in the place of what the plan says of their relations.
 
     Args:
@@ -41,7 +41,7 @@ class Relations:
         world: World,
         domain: Domain,
         asked: Mapping[str, tuple[Relation, Classifier]],
-        log: Log,
+        log: ViolationLog,
     ) -> None:
         self._plan, self._world, self._domain, self._asked, self._log = (
             plan,

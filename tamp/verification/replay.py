@@ -10,7 +10,7 @@ import numpy as np
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.states import columns, start_row
 from tamp.geometric.scene.pose import Array, base_difference, pose_difference
-from tamp.plan.read import Hold, PlanFile, Segment, TimedAction
+from tamp.plan.read import Hold, PlanFile, StoredSegment, TimedAction
 from tamp.simulation.world import World
 from tamp.symbolic.pddl.formatter import to_text
 from tamp.symbolic.pddl.structs import Formula
@@ -19,12 +19,12 @@ from tamp.verification.collision_sweep import CollisionFindings, ExpectedContact
 from tamp.verification.execution_state import ExecutionState, Held, carried, follow
 from tamp.verification.limits import limit_violations, moving_part
 from tamp.verification.loads import Loads
-from tamp.verification.relations import Relations
+from tamp.verification.relations import ObservedRelations
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.state_agreement import Agreement
 from tamp.verification.support_relations import SupportRelations
 from tamp.verification.touching_pairs import forget_parted, note_touching
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 SEGMENT_JUMP = 1e-4
 """Metres or radians by which the robot may differ where two segments meet."""
@@ -51,8 +51,8 @@ class Replay:
         sweeper: Sweeper,
         semantics: Semantics,
         certified: Certified,
-        relations: Relations,
-        log: Log,
+        relations: ObservedRelations,
+        log: ViolationLog,
     ) -> None:
         self._plan, self._world, self._robot, self._sweeper = plan, world, robot, sweeper
         self._semantics, self._certified, self._relations = semantics, certified, relations
@@ -171,7 +171,7 @@ class Replay:
         return kept
 
     def _carry_out(
-        self, segment: Segment, usual: ExpectedContacts, findings: CollisionFindings
+        self, segment: StoredSegment, usual: ExpectedContacts, findings: CollisionFindings
     ) -> None:
         course = self.course
         if abs(segment.times[0]) > TIME_TOLERANCE_S:
@@ -195,11 +195,11 @@ class Replay:
         if segment.attach is not None:
             self._attach(segment.attach, arm)
 
-    def _arm(self, segment: Segment) -> int:
+    def _arm(self, segment: StoredSegment) -> int:
         """Return the number of a segment's arm."""
         return 0 if segment.arm is None else self._arms[segment.arm]
 
-    def _rows(self, segment: Segment, arm: int) -> Array:
+    def _rows(self, segment: StoredSegment, arm: int) -> Array:
         """Return the robot's states, shape (n, width), checked to go on from the last one."""
         course, hand = self.course, self.course.hands.get(arm)
         held = None if hand is None else hand.body

@@ -8,7 +8,7 @@ from typing import Any
 
 from tamp.errors import one_line, printable
 from tamp.plan.violation import Violation
-from tamp.verification.collision_sweep import Contact
+from tamp.verification.collision_sweep import PairDistance
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ class Report:
     actions: int
     duration: float
     states: int
-    nearest: Contact | None
+    nearest: PairDistance | None
     trusted: dict[str, int]
     notes: tuple[str, ...]
     seconds: float

@@ -18,14 +18,14 @@ from tamp.verification.execution_state import ExecutionState
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.limits import moving_part
 from tamp.verification.semantics import State
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 
 class Agreement:
     """Compares states of facts with a course, as far as the domain has the fluents that we know."""
 
     def __init__(
-        self, plan: PlanFile, world: World, robot: Robot, domain: Domain, log: Log
+        self, plan: PlanFile, world: World, robot: Robot, domain: Domain, log: ViolationLog
     ) -> None:
         self._plan, self._world, self._log, self._domain = plan, world, log, domain
         self._bodies = {name.lower(): name for name in world.scene.bodies}

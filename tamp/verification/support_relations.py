@@ -12,7 +12,7 @@ from tamp.verification.formulas import facts as facts_of
 from tamp.verification.initial_state import has_standard_meaning
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_geometry import SupportContact, Supports
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 SUPPORT_PREDICATES = {
     "supported": 4,
@@ -35,7 +35,12 @@ class SupportRelations:
     """
 
     def __init__(
-        self, plan: PlanFile, world: World, semantics: Semantics, checkable: set[str], log: Log
+        self,
+        plan: PlanFile,
+        world: World,
+        semantics: Semantics,
+        checkable: set[str],
+        log: ViolationLog,
     ) -> None:
         self._plan, self._world, self._semantics, self._log = plan, world, semantics, log
         self._supports = Supports(world)

@@ -6,13 +6,13 @@ import itertools
 
 from tamp.simulation.world import World
 from tamp.verification.collision_sweep import MAX_PENETRATION_M, Sweeper
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 TOUCHING_GAP_M = 5e-4
 """Metres of air up to which bodies count as touching each other at the start."""
 
 
-def note_touching(world: World, sweeper: Sweeper, log: Log) -> None:
+def note_touching(world: World, sweeper: Sweeper, log: ViolationLog) -> None:
     """Note the bodies that touch at the start; log those that penetrate."""
     scene = world.scene
     for first, second in itertools.combinations(scene.bodies, 2):

@@ -41,7 +41,7 @@ KEPT = 4096
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class SampledMotion:
     """A motion, sampled: n states, and what moves in them, the links and the pieces held.
 
     Attributes:
@@ -67,12 +67,12 @@ class Motion:
         """Box all that each mover sweeps: corners, each (movers, 3)."""
         return self.low.min(axis=1), self.high.max(axis=1)
 
-    def part(self, some: slice) -> Motion:
+    def part(self, some: slice) -> SampledMotion:
         """Take some of the states."""
         if some.start == 0 and len(self.rows) <= some.stop:
             return self
         moving = (self.frames, self.low, self.high, self.ways)
-        return Motion(
+        return SampledMotion(
             self.rows[some], self.times[some], self.shaped[some], *(one[:, some] for one in moving)
         )
 
@@ -88,7 +88,7 @@ class Sampler:
         self._rest = rest_row(robot)
         self._frames_of = LinkFrames(world, robot)
         self._hand_radii: dict[tuple[int, float], float] = {}
-        self._lately: dict[bytes, list[Motion]] = {}
+        self._lately: dict[bytes, list[SampledMotion]] = {}
 
     def tool(self, row: Array, arm: int = 0) -> Array:
         """Compute T_world_tool (4, 4) of an arm in a state, by the engine's forward kinematics."""
@@ -113,7 +113,7 @@ class Sampler:
         bodies = [one.body for one in carried(held)]
         return self._links + [piece for body in bodies for piece in self._world.solids[body]]
 
-    def motions(self, rows: Array, times: Array, held: Sequence[Held]) -> Iterator[Motion]:
+    def motions(self, rows: Array, times: Array, held: Sequence[Held]) -> Iterator[SampledMotion]:
         """Yield a motion, sampled, in pieces that fit memory; the last few are remembered."""
         parts = [rows, times, *(one.T_tool_body for one in carried(held))]
         names = " ".join(f"{one.body} {one.arm}" for one in carried(held))
@@ -122,7 +122,7 @@ class Sampler:
             yield from self._lately[key]
             return
 
-        made: list[Motion] = []
+        made: list[SampledMotion] = []
         states = 0
         for some, then in self.pieces(rows, times):
             motion = self.sampled(some, then, held)
@@ -173,7 +173,7 @@ class Sampler:
         if first < len(rows) - 1:
             yield rows[first:], times[first:]
 
-    def sampled(self, rows: Array, times: Array, held: Sequence[Held]) -> Motion:
+    def sampled(self, rows: Array, times: Array, held: Sequence[Held]) -> SampledMotion:
         """Interpolate rows and times, in steps of POINT_STEP_M and JOINT_STEP_RAD at most."""
         if len(rows) > 1:
             turned = np.abs(np.diff(rows[:, 2:-1], axis=0)).sum(axis=1)
@@ -196,7 +196,7 @@ class Sampler:
         shaped[1:] = (rows[1:, 3:] != rows[:-1, 3:]).any(axis=1)
         ways = np.zeros((len(solids), len(rows)))
         np.cumsum(chords, axis=1, out=ways[:, 1:])
-        return Motion(rows, times, shaped, frames, *_boxes(solids, frames), ways)
+        return SampledMotion(rows, times, shaped, frames, *_boxes(solids, frames), ways)
 
     def _frames(self, rows: Array, held: Sequence[Held]) -> Array:
         """Compute the movers' frames, shape (movers, n, 4, 4); rigid while only the base moves."""

@@ -13,11 +13,8 @@ from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.parser import parse_streams
 from tamp.symbolic.pddl.relations import relation_names, relation_of
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, StreamFile
-from tamp.system.files import find_domain, shipped
+from tamp.system.files import STREAMS_SUFFIX, find_domain, shipped
 from tamp.verification.initial_state import KINDS_OF_OBJECTS
-
-STREAMS_SUFFIX = ".streams.pddl"
-"""What a domain's streams file ends with, beside the domain."""
 
 
 def streams_file(plan: PlanFile, override: Path | None, domain: Path | None = None) -> Path | None:

@@ -26,7 +26,7 @@ from tamp.verification.collision_sweep import Sweeper
 from tamp.verification.formulas import substitute
 from tamp.verification.initial_state import check_initial, check_objects
 from tamp.verification.inputs import Inputs, find_files, read_inputs
-from tamp.verification.relations import Relations
+from tamp.verification.relations import ObservedRelations
 from tamp.verification.replay import Replay
 from tamp.verification.report import Report
 from tamp.verification.semantics import Semantics
@@ -38,7 +38,7 @@ from tamp.verification.trust import (
     trusted_relations,
 )
 from tamp.verification.two_engines import compared
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 NO_CLASSIFIERS: Mapping[str, Classifier] = MappingProxyType({})
 
@@ -111,8 +111,8 @@ def _judge(inputs: Inputs, engine: str, began: float) -> Report:
 
         for body in loaded.scene.bodies.values():
             world.place(body.name, body.pose.matrix)
-        log = Log()
-        relations = Relations(plan, world, domain, inputs.asked, log)
+        log = ViolationLog()
+        relations = ObservedRelations(plan, world, domain, inputs.asked, log)
         replay = Replay(plan, world, robot, sweeper, semantics, certified, relations, log)
         replay.run(inputs.goal)
         violations += log.violations
@@ -125,7 +125,7 @@ def _report(
     inputs: Inputs,
     violations: Sequence[Violation],
     trusted: Mapping[str, int],
-    relations: Relations,
+    relations: ObservedRelations,
     replay: Replay,
     decided: AbstractSet[str],
     began: float,

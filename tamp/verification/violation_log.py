@@ -5,7 +5,7 @@ from __future__ import annotations
 from tamp.plan.violation import Violation
 
 
-class Log:
+class ViolationLog:
     """Collects violations. `action` and `time` say where the plan has come to."""
 
     def __init__(self) -> None:

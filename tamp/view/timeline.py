@@ -13,7 +13,7 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.states import columns, start_row
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Scene
-from tamp.plan.read import PlanFile, Segment, TimedAction
+from tamp.plan.read import PlanFile, StoredSegment, TimedAction
 from tamp.symbolic.pddl.structs import Fact
 
 
@@ -152,7 +152,7 @@ class _Maker:
         self._arms = {arm.arm: number for number, arm in enumerate(robot.arms)}
         self._load: tuple[str, ...] = ()
 
-    def follow(self, segment: Segment, clock: float) -> None:
+    def follow(self, segment: StoredSegment, clock: float) -> None:
         """Move one part along a segment."""
         arm = 0 if segment.arm is None else self._arms[segment.arm]
         own = self._columns[arm]

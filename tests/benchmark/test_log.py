@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tamp.benchmark.log import Log, read_log
+from tamp.benchmark.log import RunLog, read_log
 from tamp.errors import InputError
 from tests.benchmark.toys import line, some
 
@@ -15,10 +15,10 @@ from tests.benchmark.toys import line, some
 def test_what_is_there_is_not_missing(tmp_path: Path) -> None:
     path = tmp_path / "deep" / "log.jsonl"
     runs = some(3)
-    with Log(path) as log:
+    with RunLog(path) as log:
         assert log.missing([*runs, runs[0]]) == runs
         log.add(line(runs[1], broken=float("inf")))
-    with Log(path) as log:
+    with RunLog(path) as log:
         assert log.missing(runs) == [runs[0], runs[2]]
     assert [found["broken"] for found in read_log(path)] == [None]
 
@@ -29,7 +29,7 @@ def test_a_half_written_last_line_is_repaired(rest: str, tmp_path: Path) -> None
     whole = json.dumps(line(some(1)[0])) + "\n"
     path.write_bytes(whole.encode() + rest.encode()[:-1] + b"\xc3" * bool(rest))
     assert len(read_log(path)) == 1
-    with Log(path) as log:
+    with RunLog(path) as log:
         assert [case.seed for case in log.missing(some(2))] == [1]
         log.add(line(some(2)[1]))
     assert [found["seed"] for found in read_log(path)] == [0, 1]
@@ -38,7 +38,7 @@ def test_a_half_written_last_line_is_repaired(rest: str, tmp_path: Path) -> None
 def test_a_first_line_that_is_half_written_leaves_nothing(tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
     path.write_text('{"config"', encoding="utf-8")
-    with Log(path) as log:
+    with RunLog(path) as log:
         assert log.lines == []
     assert path.read_bytes() == b""
 
@@ -59,7 +59,7 @@ def test_a_damaged_line_is_named(damage: str, tmp_path: Path) -> None:
     good = json.dumps(line(some(1)[0]))
     path.write_text(f"{good}\n{damage}\n{good}\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"log\.jsonl:2: no result of tamp-bench"):
-        Log(path)
+        RunLog(path)
     with pytest.raises(InputError, match=r"log\.jsonl:2: "):
         read_log(path)
     assert damage in path.read_text(encoding="utf-8")  # nothing of the user's is touched
@@ -67,7 +67,7 @@ def test_a_damaged_line_is_named(damage: str, tmp_path: Path) -> None:
 
 def test_other_settings_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
-    with Log(path) as log:
+    with RunLog(path) as log:
         log.add(line(some(1)[0]))
         log.check(30.0, "adaptive")
         with pytest.raises(
@@ -84,15 +84,15 @@ def test_other_settings_are_refused(tmp_path: Path) -> None:
 
 def test_two_cannot_add_to_the_same_results(tmp_path: Path) -> None:
     path = tmp_path / "log.jsonl"
-    with Log(path), pytest.raises(InputError, match="another process"):
-        Log(path)
-    with Log(path):
+    with RunLog(path), pytest.raises(InputError, match="another process"):
+        RunLog(path)
+    with RunLog(path):
         pass
 
 
 def test_what_cannot_be_read_or_written_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot be written"):
-        Log(tmp_path)
+        RunLog(tmp_path)
     with pytest.raises(InputError, match="no such file"):
         read_log(tmp_path / "none.jsonl")
     (tmp_path / "empty.jsonl").touch()

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from tamp.benchmark.log import Log, read_log
+from tamp.benchmark.log import RunLog, read_log
 from tamp.benchmark.process_pool import ProcessPool
 from tamp.benchmark.ray_pool import LOCAL, RayPool
 from tamp.benchmark.scheduler import ATTEMPTS, LOST, run_all
@@ -38,7 +38,10 @@ def test_a_killed_worker_loses_no_run_and_doubles_none(
     traces = tmp_path / "traces"
     traces.mkdir()
     left: list[int] = []
-    with Log(tmp_path / "log.jsonl") as log, closing(pool(partial(note, folder=traces))) as workers:
+    with (
+        RunLog(tmp_path / "log.jsonl") as log,
+        closing(pool(partial(note, folder=traces))) as workers,
+    ):
         run_all(some(2)[:1], workers, log, lambda line, _: None)
         run_all(some(RUNS), workers, log, lambda line, count: left.append(count))
     lines = read_log(tmp_path / "log.jsonl")
@@ -52,7 +55,7 @@ def test_a_killed_worker_loses_no_run_and_doubles_none(
 
 
 def test_a_run_that_kills_every_worker_is_written_down_as_lost(tmp_path: Path) -> None:
-    with Log(tmp_path / "log.jsonl") as log, closing(processes(die)) as workers:
+    with RunLog(tmp_path / "log.jsonl") as log, closing(processes(die)) as workers:
         run_all(some(2), workers, log, lambda line, _: None)
     by_seed = {line["seed"]: line for line in read_log(tmp_path / "log.jsonl")}
     assert by_seed[0]["outcome"] == LOST and not by_seed[0]["solved"]
@@ -61,7 +64,7 @@ def test_a_run_that_kills_every_worker_is_written_down_as_lost(tmp_path: Path) -
 
 
 def test_workers_that_cannot_start_are_an_error_and_no_results(tmp_path: Path) -> None:
-    with Log(tmp_path / "log.jsonl") as log, closing(ProcessPool(1, die, refuse)) as workers:
+    with RunLog(tmp_path / "log.jsonl") as log, closing(ProcessPool(1, die, refuse)) as workers:
         with pytest.raises(InputError, match="before its first run"):
             run_all(some(2), workers, log, lambda line, _: None)
         assert log.lines == []

@@ -8,7 +8,7 @@ import numpy as np
 
 from tamp.geometric.loading.bodies import UnplacedBody, read_body
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.convex import hull_of
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import (
@@ -67,7 +67,7 @@ def cuboid(size: tuple[float, float, float]) -> Array:
     return signs * np.array(size) / 2
 
 
-def yaml(folder: Path, text: str) -> Node:
+def yaml(folder: Path, text: str) -> YamlNode:
     """The root of a YAML text, read from a file in the folder."""
     file = folder / "given.yaml"
     file.write_text(text, encoding="utf-8")

@@ -84,8 +84,8 @@ def test_models_without_weights_of_their_own(learn: Run) -> None:
 
 
 def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    few = encoders.Args(batch=2, validation=2)
-    monkeypatch.setattr(encoders, "Args", lambda seed: few)
+    few = encoders.EncoderOptions(batch=2, validation=2)
+    monkeypatch.setattr(encoders, "EncoderOptions", lambda seed: few)
     assert "weights/on_encoder.safetensors written" in learn(
         "encoder on --iterations 1 --points 64"
     )

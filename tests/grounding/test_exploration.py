@@ -11,11 +11,11 @@ from grounding import chunks
 from grounding.cli import BAD_INPUT, DONE, run
 from grounding.dataset import Dataset
 from grounding.exploration import KINDS, RESTED, STAYED, Exploration, Explorer, explore, moved
-from grounding.model import Model
+from grounding.model import RelationModel
 from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
 from grounding.relation_scene import RelationScene
-from grounding.scenes import Scenes
+from grounding.scenes import SceneSampler
 from grounding.separation import Obstacles, separations
 from grounding.train import train
 from grounding.weights import write_weights
@@ -57,7 +57,7 @@ def test_a_grounding_learned_from_it_proposes(tmp_path: Path) -> None:
     path = tmp_path / "on.safetensors"
     write_weights(path, weights)
     model, rng, held = load_model(path), np.random.default_rng(0), 0
-    scenes, items = Scenes("on", "train"), ItemOf()
+    scenes, items = SceneSampler("on", "train"), ItemOf()
     with open_drops() as drops:
         for _ in range(12):
             situation = scenes.draw(rng).situation(np.eye(4))
@@ -72,7 +72,7 @@ def test_a_grounding_learned_from_it_proposes(tmp_path: Path) -> None:
         explore(Exploration("inside", 4, weights=path), tmp_path / "third.npz", workers=1)
 
 
-class Nowhere(Model):
+class Nowhere(RelationModel):
     """Counts how often it is asked, and proposes what cannot hold."""
 
     asked = 0
@@ -90,7 +90,7 @@ class Nowhere(Model):
 def test_a_bad_grounding_costs_no_more_than_its_half() -> None:
     model = Nowhere()
     with open_drops() as drops:
-        explorer = Explorer(Scenes("on", "train"), drops, model)
+        explorer = Explorer(SceneSampler("on", "train"), drops, model)
         made = explorer.make(True, np.random.default_rng(1))
     assert model.asked and made.holds and made.kind in (STAYED, RESTED)
 

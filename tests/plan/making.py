@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.plan.read import Hold, PlanFile, Segment, TimedAction, Value
+from tamp.plan.read import Hold, PlanFile, StoredSegment, TimedAction, Value
 from tamp.symbolic.pddl.structs import Fact
 
 OPEN = 0.08
@@ -19,41 +19,41 @@ def base(
     rows: Sequence[Sequence[float]],
     opening: float = OPEN,
     holding: str | None = None,
-) -> Segment:
+) -> StoredSegment:
     """The base through rows of x, y, yaw."""
-    return Segment(
+    return StoredSegment(
         "base", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding
     )
 
 
 def arm(
     times: Sequence[float], rows: Sequence[Array], opening: float = OPEN, holding: str | None = None
-) -> Segment:
+) -> StoredSegment:
     """The arm through rows of seven angles."""
-    return Segment(
+    return StoredSegment(
         "arm", np.array(times, float), np.array(rows, float), np.full(len(times), opening), holding
     )
 
 
 def close(
     body: str, width: float = 0.05, seconds: float = 0.5, T_tool_body: Array | None = None
-) -> Segment:
+) -> StoredSegment:
     """The fingers close on a body."""
     hold = Hold(body, Pose().matrix if T_tool_body is None else T_tool_body, width)
-    return Segment(
+    return StoredSegment(
         "gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([OPEN, width]), attach=hold
     )
 
 
-def let_go(body: str, width: float = 0.05, seconds: float = 0.5) -> Segment:
+def let_go(body: str, width: float = 0.05, seconds: float = 0.5) -> StoredSegment:
     """The fingers open and let a body go."""
-    return Segment(
+    return StoredSegment(
         "gripper", np.array([0.0, seconds]), np.empty((2, 0)), np.array([width, OPEN]), detach=body
     )
 
 
 def plan_of(
-    *actions: tuple[str, tuple[str, ...], Sequence[Segment]],
+    *actions: tuple[str, tuple[str, ...], Sequence[StoredSegment]],
     values: Mapping[str, Value] | None = None,
     initial: Sequence[Fact] = (),
     certified: Sequence[Fact] = (),

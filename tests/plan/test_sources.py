@@ -9,14 +9,14 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError
-from tamp.plan.read import PlanFile, Source
+from tamp.plan.read import PlanFile, PlanSource
 from tamp.plan.sources import check_files, plan_hashes, sha256, source_file, unquoted
 from tests.plan.making import plan_of
 
 
 def made_from(folder: Path, **sources: tuple[Path, str]) -> PlanFile:
     """A plan in a folder that names files by role."""
-    named = tuple(Source(role, path, digest) for role, (path, digest) in sources.items())
+    named = tuple(PlanSource(role, path, digest) for role, (path, digest) in sources.items())
     return replace(plan_of(), file=folder / "plan.json", sources=named)
 
 

@@ -10,7 +10,7 @@ import pytest
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Scene
-from tamp.relations.observed import Observation, moved, observe, refuse_silent, scene_names
+from tamp.relations.observed import ClassifierAnswers, moved, observe, refuse_silent, scene_names
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.relations import relation_of
 from tests.geometric.making import body, scene, table
@@ -48,7 +48,9 @@ class Left:
         return float(scene.bodies[arguments[0]].pose.position[0] < 0) if answer is None else answer  # type: ignore[return-value]
 
 
-def seen(classifier: Left, at: dict[str, str] | None = None, made: Scene = SCENE) -> Observation:
+def seen(
+    classifier: Left, at: dict[str, str] | None = None, made: Scene = SCENE
+) -> ClassifierAnswers:
     relation = relation_of(STREAMS, DOMAIN, "left")
     assert relation is not None
     return observe(
@@ -106,7 +108,7 @@ def test_a_classifier_that_answers_nothing_is_refused() -> None:
         match=r"the classifier of 'left' does not work: asked of \(left (cup|box) table\), it",
     ):
         refuse_silent("left", found)
-    refuse_silent("left", Observation())  # it was asked nothing
+    refuse_silent("left", ClassifierAnswers())  # it was asked nothing
 
 
 def test_bodies_are_moved_and_the_one_in_the_hand_is_away() -> None:

@@ -22,7 +22,7 @@ from tamp.verification.broad_phase import Pairs, Still
 from tamp.verification.collision_sweep import CLEARANCE_RANGE_M, Sweeper
 from tamp.verification.link_frames import LinkFrames
 from tamp.verification.report import Report
-from tamp.verification.trajectory_sampling import Motion
+from tamp.verification.trajectory_sampling import SampledMotion
 from tamp.verification.verify import verify
 
 INSTALLED = [name for name in ENGINES if installed(name)]
@@ -45,7 +45,7 @@ class EveryPair:
 
 
 def every_still(
-    motion: Motion, still: Still, within: Array
+    motion: SampledMotion, still: Still, within: Array
 ) -> Iterator[tuple[int, int, int, float]]:
     """All pairs in all states that are looked at at all, said to be as near as can be."""
     for state in range(len(motion.rows)):
@@ -55,7 +55,7 @@ def every_still(
             yield state, mover, piece, -np.inf
 
 
-def every_itself(motion: Motion, pairs: Pairs) -> Iterator[tuple[int, int]]:
+def every_itself(motion: SampledMotion, pairs: Pairs) -> Iterator[tuple[int, int]]:
     for state in np.flatnonzero(motion.shaped).tolist():
         for number, (first, second) in enumerate(pairs.tolist()):
             low, high = motion.low[:, state], motion.high[:, state]

@@ -12,7 +12,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.scene import Room
-from tamp.plan.read import Segment
+from tamp.plan.read import StoredSegment
 from tamp.verification.limits import LimitViolation, check_ranges, limit_violations
 from tamp.verification.makers_limits import PANDA_MOBILE, limits_of
 from tests.plan.making import arm, base, close, plan_of
@@ -26,11 +26,11 @@ def robot() -> Robot:
     return ROBOTS["panda_mobile"]()
 
 
-def found(robot: Robot, *segments: Segment) -> dict[str, LimitViolation]:
+def found(robot: Robot, *segments: StoredSegment) -> dict[str, LimitViolation]:
     return {excess.kind: excess for excess in limit_violations(segments, robot, ROOM)}
 
 
-def ramp(distance: float, acceleration: float, count: int = 41) -> Segment:
+def ramp(distance: float, acceleration: float, count: int = 41) -> StoredSegment:
     """The base from rest to rest along x with one acceleration up to the middle and the same to brake."""
     half = np.sqrt(distance / acceleration)
     times = np.linspace(0.0, 2 * half, count)
@@ -117,9 +117,9 @@ def test_wheels_do_not_slide_sideways_and_a_fixed_base_not_at_all(
 
 
 def test_fingers_open_no_wider_and_no_faster_than_they_can(robot: Robot) -> None:
-    wide = Segment("gripper", np.array([0.0, 1.0]), np.empty((2, 0)), np.array([0.08, 0.09]))
+    wide = StoredSegment("gripper", np.array([0.0, 1.0]), np.empty((2, 0)), np.array([0.08, 0.09]))
     assert found(robot, wide)["limit"].amount == pytest.approx(0.01)
-    quick = Segment("gripper", np.array([0.0, 0.1]), np.empty((2, 0)), np.array([0.08, 0.02]))
+    quick = StoredSegment("gripper", np.array([0.0, 0.1]), np.empty((2, 0)), np.array([0.08, 0.02]))
     # Both fingers move: 0.1 m/s between them.
     assert found(robot, quick)["velocity"].amount == pytest.approx(0.6 - 0.1)
 

@@ -13,7 +13,7 @@ from tamp.plan.read import Hold, Value
 from tamp.verification.execution_state import ExecutionState, Held
 from tamp.verification.loads import LOADED_TILT_RAD, Loads
 from tamp.verification.semantics import State
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 
 UP = Pose((0.0, 0.0, 0.1)).matrix
 """The cup stands 10 cm above the tray's origin."""
@@ -47,14 +47,14 @@ def loads(
     on: dict[str, set[str]] | None = None,
     values: dict[str, Value] = VALUES,
     arity: int = 4,
-) -> tuple[Loads, Log]:
+) -> tuple[Loads, ViolationLog]:
     """`on` says what each body is felt to rest on."""
     world = World(at or {"Tray": tray(), "cup": tray() @ UP, "spoon": np.eye(4)})
     felt = {"cup": {"Tray"}, **(on or {})}
     supports = SimpleNamespace(stand=lambda name, _: SimpleNamespace(on=felt.get(name, set())))
     predicate = SimpleNamespace(parameters=(None,) * arity)
     domain = SimpleNamespace(predicates={"riding": predicate})
-    log = Log()
+    log = ViolationLog()
     made = Loads(
         SimpleNamespace(values=values), world, SimpleNamespace(domain=domain), supports, log  # type: ignore[arg-type]
     )  # fmt: skip
@@ -72,7 +72,7 @@ def state(*facts: tuple[str, ...]) -> State:
     return State.of(facts)
 
 
-def kinds(log: Log) -> list[tuple[str, tuple[str, ...]]]:
+def kinds(log: ViolationLog) -> list[tuple[str, tuple[str, ...]]]:
     return [(one.kind, one.bodies) for one in log.violations]
 
 
@@ -133,7 +133,7 @@ def test_a_domain_whose_riding_means_something_else_has_no_loads() -> None:
     assert log.violations == []
 
 
-def lean(log: Log, made: Loads, *tilts: float, load: bool = True) -> list[str]:
+def lean(log: ViolationLog, made: Loads, *tilts: float, load: bool = True) -> list[str]:
     held = Held("Tray", np.linalg.inv(TOOL) @ tray(), (Held("cup", np.eye(4)),) if load else ())
     sweeper = SimpleNamespace(
         tool=lambda row, arm: tray(tilt=float(row[0])) @ np.linalg.inv(tray()) @ TOOL

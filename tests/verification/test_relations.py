@@ -17,9 +17,9 @@ from tamp.plan.read import PlanFile, Value
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.relations import relation_of
 from tamp.symbolic.pddl.structs import Fact
-from tamp.verification.relations import Relations
+from tamp.verification.relations import ObservedRelations
 from tamp.verification.semantics import State
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 from tests.own import SAMPLED, write_domain, write_problem
 
 Answer = Callable[[float, str], float]
@@ -82,8 +82,8 @@ def judged(root: Path, tmp_path: Path) -> Callable[..., Any]:
         in_hand: str | None = None,
         at: str = "milk milk_start, tea p",
         times: int = 1,
-    ) -> tuple[State, Asked, Relations, Log]:
-        asked, log = Asked(answer), Log()
+    ) -> tuple[State, Asked, ObservedRelations, ViolationLog]:
+        asked, log = Asked(answer), ViolationLog()
         plan = PlanFile(
             None, (), "panda_mobile",
             {"milk": ("movable",), "tea": ("movable",), "table": ("surface",)},
@@ -91,7 +91,7 @@ def judged(root: Path, tmp_path: Path) -> Callable[..., Any]:
             (), tuple(certified), 0.0, 0.0,
         )  # fmt: skip
         given = {"upright": (relation, asked)}
-        found = Relations(plan, Still(scene), domain, given, log)  # type: ignore[arg-type]
+        found = ObservedRelations(plan, Still(scene), domain, given, log)  # type: ignore[arg-type]
         now = [("at-pose", *pair.split()) for pair in at.split(", ") if at]
         for _ in range(times):
             held = frozenset() if in_hand is None else frozenset({in_hand})
@@ -200,4 +200,7 @@ def test_without_classifiers_the_state_is_as_it_was(root: Path, tmp_path: Path) 
     plan = PlanFile(None, (), "r", {}, (), "", {}, (), (), 0.0, 0.0)
     domain = parse_domain(domain_file.read_text(), domain_file)
     state = State.of([("hand-empty",)])
-    assert Relations(plan, None, domain, {}, Log()).observed(state, frozenset()) is state  # type: ignore[arg-type]
+    assert (
+        ObservedRelations(plan, None, domain, {}, ViolationLog()).observed(state, frozenset())
+        is state
+    )  # type: ignore[arg-type]

@@ -17,7 +17,7 @@ from tamp.system.files import find_domain
 from tamp.verification.execution_state import ExecutionState, Held
 from tamp.verification.semantics import State
 from tamp.verification.state_agreement import Agreement
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 from tests.geometric.making import body, scene, table
 from tests.plan.making import arm, base, plan_of
 
@@ -35,9 +35,9 @@ START = {("at-pose", "cup", "p"), ("at-base", "b"), ("hand-empty",)}
 CARRIED = {("holding", "cup", "g"), ("at-base", "b")}
 
 
-def agreement(plan: PlanFile | None = None, at: np.ndarray = AT) -> tuple[Agreement, Log]:
+def agreement(plan: PlanFile | None = None, at: np.ndarray = AT) -> tuple[Agreement, ViolationLog]:
     world: Any = SimpleNamespace(scene=SCENE, pose=lambda name: at)
-    log = Log()
+    log = ViolationLog()
     return Agreement(plan or plan_of(values=VALUES), world, ROBOT, DOMAIN, log), log
 
 

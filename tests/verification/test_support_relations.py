@@ -16,7 +16,7 @@ from tamp.symbolic.pddl.structs import And, Atom, Fact, Formula
 from tamp.system.files import find_domain
 from tamp.verification.semantics import Semantics, State
 from tamp.verification.support_relations import SUPPORT_PREDICATES, SupportRelations
-from tamp.verification.violation_log import Log
+from tamp.verification.violation_log import ViolationLog
 from tests.geometric.making import body, crate, scene, table
 from tests.plan.making import plan_of
 
@@ -43,7 +43,7 @@ class Judged:
     """A world, and what is said of it."""
 
     world: World
-    log: Log
+    log: ViolationLog
     scene: Scene = SCENE
 
     def relations(self, *certified: Fact) -> SupportRelations:
@@ -58,7 +58,7 @@ class Judged:
 @pytest.fixture
 def judged() -> Iterator[Judged]:
     with open_world(SCENE) as world:
-        yield Judged(world, Log())
+        yield Judged(world, ViolationLog())
 
 
 @pytest.mark.parametrize(

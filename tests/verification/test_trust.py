@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from tamp.errors import InputError
-from tamp.plan.read import PlanFile, Source, TimedAction
+from tamp.plan.read import PlanFile, PlanSource, TimedAction
 from tamp.plan.sources import sha256
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal, parse_streams
 from tamp.symbolic.pddl.structs import Domain, Fact, StreamFile
@@ -61,7 +61,7 @@ def plan_of(
     actions: Sequence[str] = (),
     initial: Sequence[Fact] = (),
     certified: Sequence[Fact] = (),
-    sources: Sequence[Source] = (),
+    sources: Sequence[PlanSource] = (),
     file: Path | None = None,
 ) -> PlanFile:
     timed = tuple(TimedAction(name, ("a",), 0.0, 0.0, 1.0, ()) for name in actions)
@@ -153,19 +153,19 @@ def test_certifiable_is_what_streams_certify_of_the_static(
     domain: Domain, streams: StreamFile
 ) -> None:
     assert certifiable(plan_of(), domain, streams) == {"clean", "soaped", "pose", "stood"}
-    named = [Source("streams", Path("s"), "")]
+    named = [PlanSource("streams", Path("s"), "")]
     static = {"clean", "soaped", "pose", "stood", "dry", "at-pose"}
     assert certifiable(plan_of(sources=named), domain, None) == static
     assert certifiable(plan_of(certified=(*CLEAN, ("washed", "a"))), domain, None) == {"clean"}
 
 
-def source(role: str, file: Path, text: str | None = None) -> Source:
+def source(role: str, file: Path, text: str | None = None) -> PlanSource:
     """The plan's word about a file, with another text's hash if one is given."""
     if text is None:
-        return Source(role, file, sha256(file))
+        return PlanSource(role, file, sha256(file))
     other = file.with_suffix(".other")
     other.write_text(text)
-    return Source(role, file, sha256(other))
+    return PlanSource(role, file, sha256(other))
 
 
 def test_which_streams_are_read(tmp_path: Path) -> None:
@@ -175,7 +175,7 @@ def test_which_streams_are_read(tmp_path: Path) -> None:
     assert streams_file(plan_of(), None, mine) == beside
     assert streams_file(plan_of(), None) is None
 
-    gone = Source("streams", tmp_path / "gone" / "mine.streams.pddl", "")
+    gone = PlanSource("streams", tmp_path / "gone" / "mine.streams.pddl", "")
     assert streams_file(plan_of(sources=[gone]), None, mine) is None
     plan = plan_of(sources=[gone], file=tmp_path / "plan.json")
     assert streams_file(plan, None) == beside  # of that name beside the plan

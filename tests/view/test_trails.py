@@ -8,7 +8,7 @@ import pytest
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import ArmsKinematics
 from tamp.geometric.scene.scene import Box
-from tamp.plan.read import Segment
+from tamp.plan.read import StoredSegment
 from tamp.view.timeline import timeline_of
 from tamp.view.trails import (
     DRIVE_COLOUR,
@@ -27,13 +27,13 @@ SCENE = scene(table(), body("cup", Box((0.05, 0.05, 0.1)), (0, 0, 0.551)), base=
 STEPS = np.linspace(0.0, 1.0, 101)
 
 
-def drive(start: float, end: float, holding: str | None = None) -> Segment:
+def drive(start: float, end: float, holding: str | None = None) -> StoredSegment:
     """Along y = -2 in ten seconds."""
     rows = np.column_stack([start + (end - start) * STEPS, np.full(101, -2.0), np.zeros(101)])
     return base(10 * STEPS, rows, holding=holding)
 
 
-def made(*segments: Segment) -> dict[tuple[float, ...], Trail]:
+def made(*segments: StoredSegment) -> dict[tuple[float, ...], Trail]:
     plan = plan_of(*(("act", ("cup",), [segment]) for segment in segments))
     found = trails(timeline_of(SCENE, ROBOT, plan), ArmsKinematics(ROBOT))
     return {tuple(trail.line.colours[0].round(6)): trail for trail in found}

@@ -24,7 +24,7 @@ GRIPPER = ("finger", "knuckle", "jaw", "thumb", "gripper")
 
 
 @dataclass(frozen=True)
-class Group:
+class LinkGroup:
     """A group of links that moves as one: elements of the URDF at their poses in its frame.
 
     Attributes:
@@ -54,7 +54,7 @@ class Arm:
     """
 
     joints: tuple[Joint, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[LinkGroup, ...]
     T_last_tip: Pose
     T_root_foot: Pose
     velocity: tuple[float, ...]
@@ -252,7 +252,7 @@ def _group(
     number: int,
     place: Mapping[str, tuple[int, Array]],
     without: set[str],
-) -> Group:
+) -> LinkGroup:
     found: list[Element] = []
     links = [link for link, (frame, _) in place.items() if frame == number and link not in without]
     for link in links:
@@ -262,7 +262,7 @@ def _group(
             for one in description.links[link]
         ]
     mass = sum(description.masses[link] for link in links)
-    return Group(name, tuple(found), mass, tuple(links))
+    return LinkGroup(name, tuple(found), mass, tuple(links))
 
 
 def _turned(joint: Joint, origin: Pose) -> Joint:

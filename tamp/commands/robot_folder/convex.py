@@ -36,7 +36,7 @@ JOINED = 1.1
 
 
 @dataclass(frozen=True, eq=False)
-class Solid:
+class CollisionElement:
     """A collision element: its triangles in the group's frame, and hulls that stand for it."""
 
     vertices: Array
@@ -44,21 +44,21 @@ class Solid:
     hulls: tuple[Hull, ...]
 
 
-def solids(elements: Sequence[Element], link: str) -> tuple[Solid, ...]:
+def solids(elements: Sequence[Element], link: str) -> tuple[CollisionElement, ...]:
     """Read collision elements, each as one hull.
 
     Raises:
         InputError: A mesh cannot be read, or is flat.
     """
-    found: list[Solid] = []
+    found: list[CollisionElement] = []
     for element in elements:
         vertices, faces = _triangles(element)
         vertices = element.pose.apply(vertices)
-        found.append(Solid(vertices, faces, (hull_of(vertices, link),)))
+        found.append(CollisionElement(vertices, faces, (hull_of(vertices, link),)))
     return tuple(found)
 
 
-def pieces(solid: Solid, link: str) -> tuple[Hull, ...]:
+def pieces(solid: CollisionElement, link: str) -> tuple[Hull, ...]:
     """Decompose an element into several hulls that leave its hollows free; one that is small, or
     nearly fills its hull, stays.
     """

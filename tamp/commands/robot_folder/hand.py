@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tamp.commands.robot_folder.arm import Group, outwards
+from tamp.commands.robot_folder.arm import LinkGroup, outwards
 from tamp.commands.robot_folder.description import Description
 from tamp.commands.robot_folder.joint_motion import stands
 from tamp.errors import InputError
@@ -35,7 +35,7 @@ def find_hand(
     fingers: tuple[Joint, Joint],
     fixed: Mapping[str, float],
     bare: bool = False,
-) -> tuple[Group, tuple[Joint, Joint], tuple[Group, Group]]:
+) -> tuple[LinkGroup, tuple[Joint, Joint], tuple[LinkGroup, LinkGroup]]:
     """Find the hand, the fingers' joints with their origins in the tip's frame, and the fingers;
     `bare`: the tip's own shapes are the hand's.
 
@@ -76,7 +76,7 @@ def find_hand(
 
 def _group(
     description: Description, place: Mapping[str, tuple[str, Array]], owner: str, below: bool
-) -> Group:
+) -> LinkGroup:
     """Collect what moves with a link; `below`: without the link itself."""
     links = [
         link for link, (own, _) in place.items() if own == owner and not (below and link == owner)
@@ -89,4 +89,4 @@ def _group(
             for one in description.links[link]
         ]
     mass = sum(description.masses[link] for link in links)
-    return Group(owner, tuple(elements), mass, tuple(links))
+    return LinkGroup(owner, tuple(elements), mass, tuple(links))

@@ -15,7 +15,7 @@ from tamp.commands.robot_folder.base import choose_base, on_our_box
 from tamp.commands.robot_folder.check import against_urdf, check_reach
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.column import on_column
-from tamp.commands.robot_folder.convex import Solid, joined, pieces, solids
+from tamp.commands.robot_folder.convex import CollisionElement, joined, pieces, solids
 from tamp.commands.robot_folder.description import read_description
 from tamp.commands.robot_folder.gripper import Gripper
 from tamp.commands.robot_folder.hand import tip_is_hand
@@ -116,7 +116,11 @@ def _placed(robot: Robot, wanted: Wanted, arm: Arm) -> tuple[Robot, list[str]]:
 
 
 def _robot(
-    wanted: Wanted, arm: Arm, gripper: Gripper, meshes: Mapping[str, Sequence[Solid]], file: Path
+    wanted: Wanted,
+    arm: Arm,
+    gripper: Gripper,
+    meshes: Mapping[str, Sequence[CollisionElement]],
+    file: Path,
 ) -> Robot:
     """Put base, arm and gripper together, without knowing yet which links can meet."""
     names = {group.name for group in arm.groups}
@@ -212,7 +216,7 @@ def _allowed(robot: Robot, told: Told) -> tuple[frozenset[tuple[str, str]], tupl
     return pairs, tuple(map(str, found["remarks"]))
 
 
-def _refined(robot: Robot, meshes: Mapping[str, Sequence[Solid]], told: Told) -> Robot:
+def _refined(robot: Robot, meshes: Mapping[str, Sequence[CollisionElement]], told: Told) -> Robot:
     """Decompose the links whose hulls meet much more often than they do."""
     solids = {name: some for name, some in meshes.items() if some}
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from tamp.commands.robot_folder.convex import Solid
+from tamp.commands.robot_folder.convex import CollisionElement
 from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
 from tamp.geometric.robot.kinematics import Kinematics
@@ -137,7 +137,7 @@ def allowed_pairs(
 
 
 def misjudged(
-    robot: Robot, solids: Mapping[str, Sequence[Solid]], told: Callable[[float], None]
+    robot: Robot, solids: Mapping[str, Sequence[CollisionElement]], told: Callable[[float], None]
 ) -> set[str]:
     """Find the links of the arm whose hull meets others in over WRONG more states than the mesh."""
     pairs = [

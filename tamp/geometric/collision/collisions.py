@@ -15,7 +15,7 @@ from tamp.geometric.collision.tables import (
     HIGH,
     LOW,
     PART_COLUMNS,
-    Rows,
+    TableRows,
     Tables,
     pose_rows,
     world_box,
@@ -72,7 +72,7 @@ class Collisions:
     def __init__(self, scene: Scene, robot: Robot, kinematics: Kinematics) -> None:
         self.scene = scene
         self._kinematics = kinematics
-        collected = Rows()
+        collected = TableRows()
         self._robot = RobotTables(robot, collected)
         self._rows = {
             name: np.array([collected.row(p) for p in body.parts])

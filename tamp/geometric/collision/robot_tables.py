@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.tables import FRAME, ON_FLOOR, Rows, pose_rows
+from tamp.geometric.collision.tables import FRAME, ON_FLOOR, TableRows, pose_rows
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.spheres import link_covers
 from tamp.geometric.scene.pose import Array
@@ -40,7 +40,7 @@ class RobotTables:
         collected: Where its vertices and leaves go.
     """
 
-    def __init__(self, robot: Robot, collected: Rows) -> None:
+    def __init__(self, robot: Robot, collected: TableRows) -> None:
         self.robot = robot
         origins = [joint.origin for joint in robot.joints]
         origins[0] = robot.T_base_arm @ origins[0]

@@ -82,7 +82,7 @@ def pose_rows(matrices: Float[Array, "n 4 4"]) -> Float[Array, "n 12"]:
     return np.concatenate([matrices[:, :3, :3].reshape(-1, 9), matrices[:, :3, 3]], axis=1)
 
 
-class Rows:
+class TableRows:
     """Collects the rows of convex parts and the vertices and leaves that they point to."""
 
     def __init__(self) -> None:

@@ -8,12 +8,18 @@ from pathlib import Path
 
 from tamp.errors import InputError
 from tamp.geometric.loading.declared_places import check_name, read_cavities, read_surfaces
-from tamp.geometric.loading.furniture import FURNITURE, PORTABLE_KINDS, Furniture, Options
-from tamp.geometric.loading.meshes import Mesh, capsule_parts, find_mesh, load_mesh, mesh_triangles
+from tamp.geometric.loading.furniture import FURNITURE, PORTABLE_KINDS, Furniture, FurnitureOptions
+from tamp.geometric.loading.meshes import (
+    MeshGeometry,
+    capsule_parts,
+    find_mesh,
+    load_mesh,
+    mesh_triangles,
+)
 from tamp.geometric.loading.orientation import read_orientation
 from tamp.geometric.loading.tops import MIN_TOP_WIDTH_M, top_of
 from tamp.geometric.loading.urdf_object import LARGEST_MASS
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Sphere, Visual
@@ -58,12 +64,12 @@ class UnplacedBody:
     """
 
     body: Body
-    entries: Mapping[str, Node]
-    node: Node
-    mesh: Mesh | None = None
+    entries: Mapping[str, YamlNode]
+    node: YamlNode
+    mesh: MeshGeometry | None = None
 
 
-def read_body(name: str, node: Node, folder: Path) -> UnplacedBody:
+def read_body(name: str, node: YamlNode, folder: Path) -> UnplacedBody:
     """Read one entry of `bodies:`.
 
     Args:
@@ -78,7 +84,7 @@ def read_body(name: str, node: Node, folder: Path) -> UnplacedBody:
 
     kind = _kind(node)
     entries = node.mapping((*_SHAPE_KEYS, *_COMMON_KEYS, *_options(kind, node)))
-    mesh: Mesh | None = None
+    mesh: MeshGeometry | None = None
     furniture = Furniture(())
 
     if kind == "furniture":
@@ -136,7 +142,7 @@ def read_body(name: str, node: Node, folder: Path) -> UnplacedBody:
     return UnplacedBody(body, placement, node, mesh)
 
 
-def _kind(node: Node) -> str:
+def _kind(node: YamlNode) -> str:
     found = [key for key in node.mapping() if key in _SHAPE_KEYS]
     if not found:
         keys = [key for key in node.mapping() if key not in _COMMON_KEYS]
@@ -148,14 +154,14 @@ def _kind(node: Node) -> str:
     return found[0]
 
 
-def _options(kind: str, node: Node) -> tuple[str, ...]:
+def _options(kind: str, node: YamlNode) -> tuple[str, ...]:
     if kind != "furniture":
         return _OPTIONS.get(kind, ())
     which = node.mapping()["furniture"].text(tuple(FURNITURE), "furniture")
     return ("size", *FURNITURE[which].options)
 
 
-def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
+def _furniture(name: str, entries: Mapping[str, YamlNode]) -> Furniture:
     node = entries["furniture"]
     if "size" not in entries:
         raise node.error("'size' is missing", remedy="size: [width, depth, height] in metres")
@@ -170,7 +176,7 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
             else (counts.integer(low=1, high=_MOST_BOARDS), 1)
         )
 
-    options = Options(
+    options = FurnitureOptions(
         rows=rows,
         columns=columns,
         thickness=entries["thickness"].number(positive=True) if "thickness" in entries else None,
@@ -185,7 +191,7 @@ def _furniture(name: str, entries: Mapping[str, Node]) -> Furniture:
         raise entries["size"].error(str(error)) from None
 
 
-def _mesh(entries: Mapping[str, Node], folder: Path) -> Mesh:
+def _mesh(entries: Mapping[str, YamlNode], folder: Path) -> MeshGeometry:
     node = entries["mesh"]
     scale = (1.0, 1.0, 1.0)
     if "scale" in entries:
@@ -200,7 +206,7 @@ def _mesh(entries: Mapping[str, Node], folder: Path) -> Mesh:
         raise node.error(error.message, choices=error.choices, remedy=error.remedy) from None
 
 
-def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
+def _primitive(kind: str, node: YamlNode) -> tuple[Part, ...]:
     if kind == "box":
         x, y, z = node.numbers(3, positive=True)
         return (Part(Box((x, y, z))),)
@@ -221,20 +227,20 @@ def _primitive(kind: str, node: Node) -> tuple[Part, ...]:
     return tuple(capsule_parts(radius, height - 2 * radius))
 
 
-def _stance(entries: Mapping[str, Node]) -> Pose:
+def _stance(entries: Mapping[str, YamlNode]) -> Pose:
     """Return the orientation of the body in the world, but for a turn about the vertical."""
     given = entries["pose"].mapping() if "pose" in entries else entries
     return Pose((0.0, 0.0, 0.0), read_orientation(given))
 
 
-def _visuals(mesh: Mesh | None, coloured: bool) -> tuple[Visual, ...]:
+def _visuals(mesh: MeshGeometry | None, coloured: bool) -> tuple[Visual, ...]:
     """Return the visuals of a mesh; the problem's colour counts more than the file's own."""
     visuals = mesh.visuals if mesh else ()
     return tuple(replace(visual, colour=None) for visual in visuals) if coloured else visuals
 
 
 def _number(
-    node: Node | None,
+    node: YamlNode | None,
     read: float | None,
     default: float,
     positive: bool = False,
@@ -247,7 +253,7 @@ def _number(
     return default if read is None else read
 
 
-def _check_size(parts: tuple[Part, ...], node: Node, movable: bool) -> None:
+def _check_size(parts: tuple[Part, ...], node: YamlNode, movable: bool) -> None:
     low, high = bounds(parts, Pose())
     largest, smallest = float((high - low).max()), float((high - low).min())
     if not largest <= _LARGEST:
@@ -260,7 +266,9 @@ def _check_size(parts: tuple[Part, ...], node: Node, movable: bool) -> None:
         )
 
 
-def _colour(node: Node | None, kind: str, mesh: Mesh | None) -> tuple[float, float, float, float]:
+def _colour(
+    node: YamlNode | None, kind: str, mesh: MeshGeometry | None
+) -> tuple[float, float, float, float]:
     if node is None:
         if mesh and mesh.colour:
             return mesh.colour

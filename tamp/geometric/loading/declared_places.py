@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Cavity, Surface
 
@@ -13,7 +13,7 @@ NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 """What PDDL takes for a name."""
 
 
-def read_surfaces(body: str, node: Node) -> tuple[Surface, ...]:
+def read_surfaces(body: str, node: YamlNode) -> tuple[Surface, ...]:
     """Read the `surfaces:` of a body."""
     surfaces: list[Surface] = []
     for name, entry in node.mapping().items():
@@ -28,7 +28,7 @@ def read_surfaces(body: str, node: Node) -> tuple[Surface, ...]:
     return tuple(surfaces)
 
 
-def read_cavities(body: str, node: Node) -> tuple[Cavity, ...]:
+def read_cavities(body: str, node: YamlNode) -> tuple[Cavity, ...]:
     """Read the `cavities:` of a body."""
     cavities: list[Cavity] = []
     for name, entry in node.mapping().items():
@@ -40,7 +40,7 @@ def read_cavities(body: str, node: Node) -> tuple[Cavity, ...]:
     return tuple(cavities)
 
 
-def check_name(name: str, node: Node) -> str:
+def check_name(name: str, node: YamlNode) -> str:
     """Check that a word can be a name in PDDL, and return it."""
     if not NAME.fullmatch(name):
         raise node.error(
@@ -49,6 +49,6 @@ def check_name(name: str, node: Node) -> str:
     return name
 
 
-def _frame(entries: Mapping[str, Node]) -> Pose:
+def _frame(entries: Mapping[str, YamlNode]) -> Pose:
     x, y, z = entries["at"].numbers(3)
     return Pose.from_xyz_yaw(x, y, z, entries["yaw"].angle() if "yaw" in entries else 0.0)

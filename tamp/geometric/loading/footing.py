@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Sphere
 
@@ -49,7 +50,7 @@ MAX_PARTS_LOOKED_AT = 8_000
 """Parts looked at for all bodies together: only in a crowd that lies in itself are there more."""
 
 FLOOR_NAME = "floor"
-"""What the floor is called among bodies."""
+"""What the floor at z = 0 is called among bodies, and by `on:`; it is no surface of the scene."""
 
 
 @dataclass(frozen=True)
@@ -132,23 +133,9 @@ class Ground:
         names = [FLOOR_NAME, *(name for name, _, _ in others)]
         on = frozenset(names[column] for column in np.flatnonzero(carrying.any(axis=0)))
 
-        T, centre = body.pose.matrix, center_of_mass(body)
+        T, centre = body.pose.matrix, centre_of_mass(body)
         point = (T[:3, :3] @ centre + T[:3, 3])[:2]
         return Footing(on, outside(point, xy[carrying.any(axis=1)]))
-
-
-def center_of_mass(body: Body) -> Float[Array, " 3"]:
-    """Compute the centre of mass in the body's frame, metres, shape (3,): the one that its file
-    gives, or of parts of one density.
-    """
-    if body.center_of_mass is not None:
-        return np.array(body.center_of_mass)
-    masses = [_mass(part) for part in body.parts]
-    centres = [
-        part.pose.apply(centre[None])[0]
-        for part, (_, centre) in zip(body.parts, masses, strict=True)
-    ]
-    return np.average(centres, axis=0, weights=[volume for volume, _ in masses])
 
 
 def outside(point: Float[Array, " 2"], points: Float[Array, "n 2"]) -> float:
@@ -268,21 +255,3 @@ def _points(part: Part) -> Array:
         np.concatenate([circle * np.cos(tilt) + [0.0, 0.0, np.sin(tilt)] for tilt in tilts])
         * shape.radius
     )
-
-
-def _mass(part: Part) -> tuple[float, Array]:
-    """Compute the volume and the centroid of a part in its own frame."""
-    shape = part.shape
-    if isinstance(shape, Box):
-        return math.prod(shape.size), np.zeros(3)
-    if isinstance(shape, Cylinder):
-        return math.pi * shape.radius**2 * shape.height, np.zeros(3)
-    if isinstance(shape, Sphere):
-        return 4 / 3 * math.pi * shape.radius**3, np.zeros(3)
-    inside = shape.vertices.mean(axis=0)
-    corners = shape.vertices[shape.faces] - inside
-    volumes = (
-        np.abs(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2]))) / 6
-    )
-    volume = max(float(volumes.sum()), 1e-15)
-    return volume, inside + (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / volume

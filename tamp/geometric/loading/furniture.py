@@ -18,7 +18,7 @@ _LEG_WIDTH_M = 0.05
 
 
 @dataclass(frozen=True)
-class Options:
+class FurnitureOptions:
     """The options of a piece of furniture beside its size.
 
     Attributes:
@@ -51,11 +51,11 @@ class Furniture:
 class Kind:
     """A kind of furniture: how it is built, and which options it understands."""
 
-    build: Callable[[str, Size, Options], Furniture]
+    build: Callable[[str, Size, FurnitureOptions], Furniture]
     options: tuple[str, ...]
 
 
-def _table(name: str, size: Size, options: Options) -> Furniture:
+def _table(name: str, size: Size, options: FurnitureOptions) -> Furniture:
     width, depth, height = size
     thickness = options.thickness or 0.04
     top = Surface(name, name, _at(0, 0, height), (width, depth))
@@ -88,7 +88,7 @@ def _table(name: str, size: Size, options: Options) -> Furniture:
     return Furniture((plate, *legs), (top,))
 
 
-def _shelf(name: str, size: Size, options: Options) -> Furniture:
+def _shelf(name: str, size: Size, options: FurnitureOptions) -> Furniture:
     parts, compartments = _carcass(size, options, back=bool(options.back))
     boards = [
         Surface(f"{name}_{i}", name, pose, inner[:2], clearance=inner[2])
@@ -98,7 +98,7 @@ def _shelf(name: str, size: Size, options: Options) -> Furniture:
     return Furniture(parts, (*boards, top))
 
 
-def _cupboard(name: str, size: Size, options: Options) -> Furniture:
+def _cupboard(name: str, size: Size, options: FurnitureOptions) -> Furniture:
     parts, compartments = _carcass(size, options, back=options.back is not False)
     cavities = tuple(
         Cavity(f"{name}_{i}", name, pose, inner)
@@ -107,7 +107,7 @@ def _cupboard(name: str, size: Size, options: Options) -> Furniture:
     return Furniture(parts, (Surface(f"{name}_top", name, _at(0, 0, size[2]), size[:2]),), cavities)
 
 
-def _open_box(name: str, size: Size, options: Options) -> Furniture:
+def _open_box(name: str, size: Size, options: FurnitureOptions) -> Furniture:
     width, depth, height = size
     wall = options.thickness or 0.01
     inner = (width - 2 * wall, depth - 2 * wall, height - wall)
@@ -137,7 +137,7 @@ PORTABLE_KINDS = ("open_box",)
 
 
 def _carcass(
-    size: Size, options: Options, back: bool
+    size: Size, options: FurnitureOptions, back: bool
 ) -> tuple[tuple[Part, ...], list[tuple[Pose, Size]]]:
     """Build sides, boards and dividers, and the compartments (floor's centre, inner size): bottom
     up, then left to right.

@@ -9,15 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tamp.geometric.loading.bodies import UnplacedBody
+from tamp.geometric.loading.footing import FLOOR_NAME
 from tamp.geometric.loading.orientation import read_orientation, read_pose
 from tamp.geometric.loading.tops import top_of
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import CONTACT_GAP, Body
-
-FLOOR_NAME = "floor"
-"""What `on:` calls the room's floor, at z = 0; it is no surface of the scene."""
+from tamp.geometric.scene.scene import CONTACT_GAP, LEVEL_COSINE, Body
 
 MAX_COORDINATE_M = 1e5
 """Metres from the world's origin: farther out numbers lose the tenths of a millimetre that contacts
@@ -26,7 +24,6 @@ need.
 
 _HIGHEST_PILE = 200
 _SNAP_DISTANCE_M = 0.002
-_UPRIGHT_COSINE = math.cos(math.radians(1.0))
 
 
 @dataclass(frozen=True)
@@ -146,7 +143,7 @@ class _InitialPoses:
             )
         return replace(draft.body, pose=pose, support=place.name)
 
-    def support(self, node: Node, above: tuple[str, ...]) -> _Place:
+    def support(self, node: YamlNode, above: tuple[str, ...]) -> _Place:
         """Find the surface, the cavity, the carrying body or the floor that `on:` names."""
         name = node.text()
         if name == FLOOR_NAME and name not in self.owners and name not in self.drafts:
@@ -173,12 +170,12 @@ class _InitialPoses:
         supports = sorted({*self.owners, *self.drafts, FLOOR_NAME} - {above[-1]})
         raise node.error(f"unknown surface or body '{name}'", found=name, choices=supports)
 
-    def check_level(self, body: Body, node: Node) -> None:
+    def check_level(self, body: Body, node: YamlNode) -> None:
         for place in (*body.surfaces, *body.cavities):
-            if (body.pose @ place.pose).rotation[2, 2] < _UPRIGHT_COSINE and not body.movable:
+            if (body.pose @ place.pose).rotation[2, 2] < LEVEL_COSINE and not body.movable:
                 raise node.error(f"'{place.name}' is not horizontal, nothing can stand on it")
 
-    def with_inferred_support(self, body: Body, node: Node) -> Body:
+    def with_inferred_support(self, body: Body, node: YamlNode) -> Body:
         """Settle a movable body given by its pose: snap it to what is within 2 mm below it."""
         low, high = bounds(body.parts, body.pose)
         if low[2] < -_SNAP_DISTANCE_M:
@@ -213,7 +210,7 @@ def _places(body: Body) -> dict[str, _Place]:
     places: dict[str, _Place] = {}
     for place in (*body.surfaces, *body.cavities):
         pose = body.pose @ place.pose
-        if pose.rotation[2, 2] >= _UPRIGHT_COSINE:
+        if pose.rotation[2, 2] >= LEVEL_COSINE:
             places[place.name] = _Place(place.name, pose, place.size[:2])
     return places
 

@@ -14,7 +14,7 @@ from tamp.geometric.loading.passage import PddlPassage
 from tamp.geometric.loading.robots import find_robot, load_robot
 from tamp.geometric.loading.steadying import steady
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.system.files import find_problem
 
@@ -131,7 +131,7 @@ def load_scene(
     )
 
 
-def _room(node: Node) -> Room:
+def _room(node: YamlNode) -> Room:
     entries = node.mapping(("x", "y"), required=("x", "y"))
     limits: list[tuple[float, float]] = []
     for axis in ("x", "y"):
@@ -146,7 +146,7 @@ def _room(node: Node) -> Room:
     return Room(*limits)
 
 
-def _robot(node: Node, room: Room, file: Path, instead: str | None) -> RobotStart:
+def _robot(node: YamlNode, room: Room, file: Path, instead: str | None) -> RobotStart:
     entries = node.mapping(("model", "base", "arm"), required=("model", "base"))
     named = entries["model"]
     if instead is not None:
@@ -168,7 +168,7 @@ def _robot(node: Node, room: Room, file: Path, instead: str | None) -> RobotStar
     return RobotStart(model, (x, y, yaw), _arm(entries["arm"], model) if own else None)
 
 
-def _arm(node: Node, model: str) -> tuple[float, ...]:
+def _arm(node: YamlNode, model: str) -> tuple[float, ...]:
     robot = load_robot(model)
     joints = node.items(len(robot.lower))
     angles = tuple(joint.angle() for joint in joints)

@@ -30,7 +30,7 @@ _ENTRIES = 2000
 
 
 @dataclass(frozen=True)
-class Mesh:
+class MeshGeometry:
     """A mesh file as a body's geometry.
 
     Attributes:
@@ -109,7 +109,7 @@ def _meshes_beside(path: Path, roots: list[Path]) -> set[str]:
     return found
 
 
-def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
+def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> MeshGeometry:
     """Load a mesh file as convex parts in the file's frame.
 
     Args:
@@ -124,7 +124,7 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
         return _load_urdf(path, scale)
     hulls, warnings = mesh_pieces(path, scale)
     sources = ((path, scale, Pose()),) if len(hulls) > 1 else ()
-    return Mesh(
+    return MeshGeometry(
         tuple(Part(hull) for hull in hulls),
         (path,),
         warnings,
@@ -133,7 +133,7 @@ def load_mesh(path: Path, scale: Scale = (1.0, 1.0, 1.0)) -> Mesh:
     )
 
 
-def mesh_triangles(mesh: Mesh) -> Float[Array, "n 3 3"] | None:
+def mesh_triangles(mesh: MeshGeometry) -> Float[Array, "n 3 3"] | None:
     """Return the triangles (n, 3, 3) of the mesh files among several parts, in the body's frame,
     metres; None without any.
     """
@@ -149,7 +149,7 @@ def mesh_triangles(mesh: Mesh) -> Float[Array, "n 3 3"] | None:
     return np.concatenate(found)
 
 
-def _load_urdf(path: Path, scale: Scale) -> Mesh:
+def _load_urdf(path: Path, scale: Scale) -> MeshGeometry:
     """Load a URDF file: each collision element is a part or several; the visual ones are drawn."""
     factor = scale[0]
     if scale != (factor, factor, factor) or factor < 0:
@@ -177,7 +177,7 @@ def _load_urdf(path: Path, scale: Scale) -> Mesh:
     )
     centre, doubt = _centre(path, described, tuple(parts), factor)
 
-    return Mesh(
+    return MeshGeometry(
         tuple(parts),
         tuple(files),
         (*dict.fromkeys(warnings), *doubt),

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.scene.pose import Pose
 
 
-def read_pose(node: Node) -> Pose:
+def read_pose(node: YamlNode) -> Pose:
     """Read the pose `{position: [x, y, z]}` with `quaternion: [x, y, z, w]`, `rpy: [r, p, y]` or
     `yaw:`; none of them is upright.
     """
@@ -19,7 +19,7 @@ def read_pose(node: Node) -> Pose:
     return Pose((x, y, z), read_orientation(entries))
 
 
-def read_orientation(entries: Mapping[str, Node]) -> tuple[float, float, float, float]:
+def read_orientation(entries: Mapping[str, YamlNode]) -> tuple[float, float, float, float]:
     """Read the unit quaternion from `quaternion:`, `rpy:` or `yaw:`; upright when there is none.
 
     Raises:

@@ -15,7 +15,7 @@ import tamp.geometric.robot
 from tamp.errors import InputError
 from tamp.geometric.loading.robot_gripper import read_gripper, read_pose
 from tamp.geometric.loading.yaml_file import read_yaml
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.robot.arms import Mobile, as_arm, joined
 from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.urdf import Joint
@@ -54,7 +54,7 @@ def read_robot(folder: Path) -> Robot:
     return _several(root, folder) if "arms" in top else _one(root, folder)
 
 
-def _one(root: Node, folder: Path) -> Robot:
+def _one(root: YamlNode, folder: Path) -> Robot:
     """Read a robot of one arm."""
     top = root.mapping(_TOP, required=("format", "version", "urdf", "base", "arm", "gripper"))
     base = top["base"].mapping(_BASE, required=_BASE)
@@ -109,7 +109,7 @@ def _one(root: Node, folder: Path) -> Robot:
     return robot
 
 
-def _several(root: Node, folder: Path) -> Robot:
+def _several(root: YamlNode, folder: Path) -> Robot:
     """Read a robot whose arms are those of other robots' folders."""
     top = root.mapping(("format", "version", "base", "arms"), required=("base", "arms"))
     base = top["base"].mapping(_BASE, required=_BASE)
@@ -137,7 +137,7 @@ def _several(root: Node, folder: Path) -> Robot:
     return joined(arms)
 
 
-def _beside(node: Node, folder: Path) -> Path:
+def _beside(node: YamlNode, folder: Path) -> Path:
     """Find the folder of an arm's robot: from here, or a shipped one by its name."""
     places = (folder / node.text(), ASSETS / node.text())
     for place in places:
@@ -149,7 +149,7 @@ def _beside(node: Node, folder: Path) -> Path:
     )
 
 
-def _check_format(root: Node, top: Mapping[str, Node]) -> None:
+def _check_format(root: YamlNode, top: Mapping[str, YamlNode]) -> None:
     if "format" not in top or top["format"].text() != "tamp-robot":
         raise root.error("not a robot: it does not say 'format: tamp-robot'")
     version = top["version"].text() if "version" in top else "none"
@@ -161,13 +161,13 @@ def _check_format(root: Node, top: Mapping[str, Node]) -> None:
         )
 
 
-def _check_home(robot: Robot, node: Node) -> None:
+def _check_home(robot: Robot, node: YamlNode) -> None:
     for joint, q, low, high in zip(robot.joints, robot.home, robot.lower, robot.upper, strict=True):
         if not low <= q <= high:
             raise node.error(f"{joint.name} = {q:g} is not within [{low:.5g}, {high:.5g}]")
 
 
-def _joint(name: str, entry: Mapping[str, Node]) -> Joint:
+def _joint(name: str, entry: Mapping[str, YamlNode]) -> Joint:
     kind = entry["kind"].text(KINDS, "kind of joint")
     low, high = entry["range"].numbers(2)
     least = 2 * (LIMIT_MARGIN_RAD if kind != "prismatic" else LIMIT_MARGIN_RAD / 10)
@@ -191,11 +191,11 @@ def _upper(joint: Joint) -> float:
     return joint.upper - (LIMIT_MARGIN_RAD / 10 if joint.kind == "prismatic" else LIMIT_MARGIN_RAD)
 
 
-def _each(entries: Mapping[str, Mapping[str, Node]], key: str) -> tuple[float, ...]:
+def _each(entries: Mapping[str, Mapping[str, YamlNode]], key: str) -> tuple[float, ...]:
     return tuple(entry[key].number(positive=True) for entry in entries.values())
 
 
-def _box(node: Node) -> Part:
+def _box(node: YamlNode) -> Part:
     entries = node.mapping(("size", "at"), required=("size", "at"))
     length, width, height = entries["size"].numbers(3, positive=True)
     x, y, z = entries["at"].numbers(3)
@@ -237,7 +237,7 @@ def _hulls(file: Path) -> dict[str, list[Hull]]:
     return found
 
 
-def _allowed(node: Node, names: list[str]) -> frozenset[tuple[str, str]]:
+def _allowed(node: YamlNode, names: list[str]) -> frozenset[tuple[str, str]]:
     """Read lines of names: the first of each with all others of it."""
     pairs: set[tuple[str, str]] = set()
     for line in node.items():
@@ -249,7 +249,7 @@ def _allowed(node: Node, names: list[str]) -> frozenset[tuple[str, str]]:
     return frozenset(pairs)
 
 
-def _urdf(node: Node, folder: Path) -> Path:
+def _urdf(node: YamlNode, folder: Path) -> Path:
     """Find the description: a file of the folder, or of an installed package, whose name comes
     first.
     """

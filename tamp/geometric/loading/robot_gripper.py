@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.robot.robot import Suction
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
@@ -33,7 +33,7 @@ class ReadGripper:
         node: Where the hand is named.
     """
 
-    node: Node
+    node: YamlNode
     hand: str
     T_flange_hand: Pose
     T_hand_tool: Pose
@@ -43,7 +43,7 @@ class ReadGripper:
     suction: Suction | None
 
 
-def read_gripper(node: Node) -> ReadGripper:
+def read_gripper(node: YamlNode) -> ReadGripper:
     """Read the entry `gripper`.
 
     Raises:
@@ -66,7 +66,7 @@ def read_gripper(node: Node) -> ReadGripper:
     )  # fmt: skip
 
 
-def _cup(radius: Node, tilt: Node, force: Node) -> Suction:
+def _cup(radius: YamlNode, tilt: YamlNode, force: YamlNode) -> Suction:
     cup = Suction(radius.number(positive=True), tilt.number())
     if not 0.0 <= cup.tilt <= LARGEST_TILT_RAD:
         raise tilt.error(f"a face may lean by 0 to {LARGEST_TILT_RAD:.3g} rad, not by {cup.tilt:g}")
@@ -80,7 +80,7 @@ def _cup(radius: Node, tilt: Node, force: Node) -> Suction:
     return cup
 
 
-def _fingers(gripper: dict[str, Node]) -> tuple[Joint, ...]:
+def _fingers(gripper: dict[str, YamlNode]) -> tuple[Joint, ...]:
     entries = gripper["fingers"].mapping()
     if len(entries) != 2:
         raise gripper["fingers"].error(f"a parallel gripper has two fingers, not {len(entries)}")
@@ -100,7 +100,7 @@ def _fingers(gripper: dict[str, Node]) -> tuple[Joint, ...]:
     return tuple(found)
 
 
-def read_pose(node: Node) -> Pose:
+def read_pose(node: YamlNode) -> Pose:
     """Read a position and a quaternion."""
     entries = node.mapping(("xyz", "quaternion"), required=("xyz", "quaternion"))
     x, y, z = entries["xyz"].numbers(3)

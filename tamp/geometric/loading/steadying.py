@@ -15,10 +15,10 @@ from tamp.geometric.loading.footing import (
     Footing,
     Ground,
     body_points,
-    center_of_mass,
     outside,
 )
 from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Cavity, Surface
 
@@ -99,7 +99,7 @@ def _why_not(body: Body, footing: Footing, bodies: Mapping[str, Body]) -> str | 
     if place.body not in footing.on:
         below = ", ".join(sorted(footing.on)) or "nothing within 10 mm"
         return f"under it is {below}; the surface '{place.name}' is in the air there"
-    centre = T_place_body.apply(center_of_mass(body)[None])[0]
+    centre = T_place_body.apply(centre_of_mass(body)[None])[0]
     beyond = float((np.abs(centre[:2]) - np.array(place.size) / 2).max())
     if beyond > 0.0:
         return f"its centre of mass is {1000 * beyond:.1f} mm beyond the surface's edge"
@@ -141,7 +141,7 @@ def tip(body: Body) -> Float[Array, "3 3"] | None:
     still; None beyond MAX_TIP_RAD.
     """
     points = body.pose.rotation @ body_points(body).T
-    centre = body.pose.rotation @ center_of_mass(body)
+    centre = body.pose.rotation @ centre_of_mass(body)
 
     turn = np.eye(3)
     for _ in range(MAX_ROLLS):

@@ -13,7 +13,7 @@ from tamp.geometric.loading.rectangles import inscribed, largest_of_union
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.outline import outline
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Surface
+from tamp.geometric.scene.scene import LEVEL_COSINE, Box, Cylinder, Hull, Part, Surface
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 MIN_TOP_WIDTH_M = 0.05
 """Metres: a face that is narrower carries something only where nothing wider is level and free."""
 
-_LEVEL_COSINE = math.cos(math.radians(1.0))
 _SAME_HEIGHT = 0.001
 _SAME_YAW = math.radians(0.5)
 _HEADROOM_M = 0.05
@@ -141,7 +140,7 @@ def _faces(part: Part) -> Iterator[_Face]:
     shape, rotation, position = part.shape, part.pose.rotation, part.pose.matrix[:3, 3]
     if isinstance(shape, Box):
         axis = int(np.argmax(np.abs(rotation[2])))
-        if abs(rotation[2, axis]) < _LEVEL_COSINE:
+        if abs(rotation[2, axis]) < LEVEL_COSINE:
             return
         half = np.array(shape.size) / 2
         up = math.copysign(1.0, rotation[2, axis])
@@ -154,7 +153,7 @@ def _faces(part: Part) -> Iterator[_Face]:
         )
 
     elif isinstance(shape, Cylinder):
-        if abs(rotation[2, 2]) < _LEVEL_COSINE:
+        if abs(rotation[2, 2]) < LEVEL_COSINE:
             return
         # Half of the square in the circle, its sides along the cylinder's x and y.
         side = shape.radius / 2**0.5
@@ -177,7 +176,7 @@ def _hull_face(shape: Hull, rotation: Array, position: Array) -> Iterator[_Face]
     a, b, c = points[shape.faces].transpose(1, 0, 2)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)
-    up = normals[:, 2] >= _LEVEL_COSINE * lengths
+    up = normals[:, 2] >= LEVEL_COSINE * lengths
     up &= lengths > 1e-12
     if not up.any():
         return

@@ -7,7 +7,7 @@ from pathlib import Path
 import yaml
 
 from tamp.errors import InputError
-from tamp.geometric.loading.yaml_nodes import MAX_DEPTH, Node
+from tamp.geometric.loading.yaml_nodes import MAX_DEPTH, YamlNode
 
 # libyaml's parser is ten times faster; it is missing only where PyYAML was built without it.
 _Loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -16,7 +16,7 @@ MAX_BYTES = 1_000_000
 """Larger files are refused: they are something else, and would take long to say so."""
 
 
-def read_yaml(file: Path) -> Node:
+def read_yaml(file: Path) -> YamlNode:
     """Read the root of a YAML file with one document.
 
     Raises:
@@ -46,7 +46,7 @@ def read_yaml(file: Path) -> Node:
 
     if root is None:
         raise InputError("the file is empty", file=file)
-    return Node(root, file, text.splitlines() or [""], "", 1)
+    return YamlNode(root, file, text.splitlines() or [""], "", 1)
 
 
 def _check_depth(text: str, file: Path) -> None:

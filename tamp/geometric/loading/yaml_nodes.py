@@ -26,7 +26,7 @@ _SHOWN = 60
 """Characters of a wrong word that are told."""
 
 
-class Node:
+class YamlNode:
     """A value of a YAML file: its place, its name, and readers that say what is wrong with it.
 
     Words are taken as they are written, never as YAML 1.1 reads them: `on:` is a key, not the
@@ -73,7 +73,7 @@ class Node:
 
     def mapping(
         self, allowed: Collection[str] | None = None, required: Collection[str] = ()
-    ) -> dict[str, Node]:
+    ) -> dict[str, YamlNode]:
         """Return the entries of a mapping in the file's order.
 
         Args:
@@ -98,8 +98,8 @@ class Node:
         return entries
 
     def _entries(
-        self, node: yaml.MappingNode, composed: dict[int, dict[str, Node] | None], depth: int
-    ) -> dict[str, Node]:
+        self, node: yaml.MappingNode, composed: dict[int, dict[str, YamlNode] | None], depth: int
+    ) -> dict[str, YamlNode]:
         """Return a mapping's entries, those merged too; `composed`: merged before, by identity."""
         if id(node) in composed:
             found = composed[id(node)]
@@ -113,7 +113,7 @@ class Node:
             )
 
         composed[id(node)] = None
-        entries: dict[str, Node] = {}
+        entries: dict[str, YamlNode] = {}
         merged: list[yaml.Node] = []
         for key, value in node.value:
             if key.tag == _TAG + "merge":
@@ -140,7 +140,7 @@ class Node:
         composed[id(node)] = entries
         return entries
 
-    def items(self, count: int | None = None) -> list[Node]:
+    def items(self, count: int | None = None) -> list[YamlNode]:
         """Return the entries of a list.
 
         Raises:
@@ -262,7 +262,7 @@ class Node:
             raise self.error(f"must be {bound}, found {value:g}")
         return value
 
-    def _child(self, node: yaml.Node, key: str, line: int) -> Node:
+    def _child(self, node: yaml.Node, key: str, line: int) -> YamlNode:
         key = _short(key)
         name = (
             key
@@ -271,7 +271,7 @@ class Node:
             if key.startswith("[")
             else f"{self.name}.{key}"
         )
-        return Node(node, self._file, self._source, name, line)
+        return YamlNode(node, self._file, self._source, name, line)
 
     def _described(self) -> str:
         if isinstance(self._node, yaml.SequenceNode):
@@ -291,7 +291,7 @@ def _indent(line: str) -> int:
     return len(line) - len(line.lstrip(" "))
 
 
-def _at(node: Node, error: InputError) -> InputError:
+def _at(node: YamlNode, error: InputError) -> InputError:
     """Return the error moved to the line of a child."""
     error.line = node.line
     error.args = (error.at(None).args[0],)

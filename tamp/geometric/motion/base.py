@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tamp.geometric.collision.arrangement import Arrangement
-from tamp.geometric.motion.checker import Checker
+from tamp.geometric.motion.checker import Checker, EdgeTest
 from tamp.geometric.motion.compiled_planner import Moving, connect_compiled
-from tamp.geometric.motion.differential import turn_and_drive
+from tamp.geometric.motion.differential import RETREATS_M, YAW_COLUMNS, turn_and_drive
 from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
-from tamp.geometric.motion.planners import COMPILED
+from tamp.geometric.motion.planners import COMPILED, STEERINGS
 from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.motion.shortcut import shortcut
 from tamp.geometric.scene.pose import Array
@@ -23,7 +23,6 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-YAW_COLUMNS = (2,)
 DISTANCE_WEIGHTS = np.array([1.0, 1.0, 0.5])
 """A radian of turning weighs half a metre, as in OMPL's SE2 space."""
 
@@ -37,12 +36,7 @@ SHORTCUT_PATIENCE = 8
 CURVE_STEP = (
     0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
 )
-RETREATS_M = (0.3, 0.6)  # metres to back away from furniture before turning
 MAX_PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
-
-STEERINGS = ("se2", "reeds-shepp", "differential")
-
-EdgeTest = Callable[[Array, Array], bool]
 
 
 def plan_base(

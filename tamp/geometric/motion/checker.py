@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from tamp.geometric.scene.pose import Array
+
+EdgeTest = Callable[[Array, Array], bool]
+"""Whether the straight edge between two configurations is free."""
 
 
 class Checker(Protocol):

@@ -9,7 +9,7 @@ fast each node may be passed.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -17,12 +17,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.geometric.motion.checker import EdgeTest
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-EdgeTest = Callable[[Array, Array], bool]
 
 ROUNDING = (
     0.3  # the largest distance from a corner at which its rounding begins (radians or metres)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.motion.checker import EdgeTest
 from tamp.geometric.motion.path import nearest, unwrap
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
@@ -22,9 +23,10 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-EdgeTest = Callable[[Array, Array], bool]
 
 YAW_COLUMNS = (2,)
+"""Columns of a base configuration x, y, yaw that are angles."""
+
 MAX_EDGE_M = 1.5
 """The longest edge of the trees, metres."""
 

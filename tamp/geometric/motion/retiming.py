@@ -20,18 +20,16 @@ from numba import types
 
 from tamp.geometric.motion.corner_blending import BlendedPath
 from tamp.geometric.scene.pose import Array
-from tamp.system.compilation import njit
+from tamp.system.compilation import INNER_KERNEL, njit
 
 if TYPE_CHECKING:
     from jaxtyping import Float
-
-INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 FLAT = 1e-12
 """A coefficient of u smaller than this bounds x alone."""
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _range_of(x, slopes, bends, limits, gap, most):
     """Compute the least and the largest u at x, and the slopes by x of the bounds that hold there.
 
@@ -53,7 +51,7 @@ def _range_of(x, slopes, bends, limits, gap, most):
     return low, low_slope, high, high_slope
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _largest(slopes, bends, limits, gap, most, x):
     """Find the largest squared rate, at most x, from which one up to `most` is reached."""
     for k in range(len(limits)):
@@ -68,7 +66,7 @@ def _largest(slopes, bends, limits, gap, most, x):
     return x
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _rows(i, tangents, before, after, gap, acceleration, slopes, bends, limits):
     """Write the constraints of interval i, at both of its ends; at its end x is x + 2 gap u."""
     d = len(acceleration)

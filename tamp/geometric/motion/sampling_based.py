@@ -8,7 +8,7 @@ checks bounds.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,13 +17,13 @@ import ompl.base as ob
 import ompl.geometric as og
 import ompl.util as ou
 
+from tamp.geometric.motion.checker import EdgeTest
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-EdgeTest = Callable[[Array, Array], bool]
 
 ITERATIONS_PER_CHECK = 20  # an iteration may ask for no check at all; it costs about 1 us
 

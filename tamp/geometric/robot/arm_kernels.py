@@ -13,17 +13,14 @@ import math
 import numpy as np
 from numba import types
 
-from tamp.system.compilation import njit
+from tamp.system.compilation import INNER_KERNEL, njit
 
 TWO_PI = 2.0 * np.pi
-
-INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""For functions that only compiled code calls; they are kept with the ones that call them."""
 
 ANGLES, ROWS, POSES = types.float64[::1], types.float64[:, ::1], types.float64[:, :, ::1]
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _product(A, B, C):
     """Write A @ B into C, all rigid and of shape (3, 4) or (4, 4)."""
     for r in range(3):
@@ -32,7 +29,7 @@ def _product(A, B, C):
         C[r, 3] += A[r, 3]
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def frames(origins, slides, T_flange_tool, q, joints, tool):
     """Write the frames at q (n,): the joints' (n, 3, 4) and the tool's (3, 4), by FK."""
     n = len(origins)
@@ -54,7 +51,7 @@ def frames(origins, slides, T_flange_tool, q, joints, tool):
     _product(joints[n - 1], T_flange_tool, tool)
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _error(tool, target, error):
     """Write the twist from tool to target into error (6,), position above rotation, and return its
     largest entry.
@@ -78,7 +75,7 @@ def _error(tool, target, error):
     return largest
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def jacobian(slides, joints, tool, J):
     """Write the Jacobian (6, n) of the tool: its origin's velocity above the angular one."""
     for i in range(len(slides)):
@@ -96,7 +93,7 @@ def jacobian(slides, joints, tool, J):
         J[3, i], J[4, i], J[5, i] = ax, ay, az
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def solve(A, b, floor):
     """Overwrite b (n,) by the x of A x = b for a symmetric positive definite A (n, n), of which the
     lower half is read, and overwritten as well; no pivot is below `floor`.
@@ -120,7 +117,7 @@ def solve(A, b, floor):
         b[i] /= A[i, i]
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _step(J, error, q, lower, upper, drift, step):
     """Write into step (n,) a damped least-squares step; joints that it would push out of their
     limits are frozen.

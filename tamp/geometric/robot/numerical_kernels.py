@@ -13,7 +13,6 @@ from numba import types
 
 from tamp.geometric.robot.arm_kernels import (
     ANGLES,
-    INNER,
     POSES,
     ROWS,
     TWO_PI,
@@ -21,7 +20,7 @@ from tamp.geometric.robot.arm_kernels import (
     jacobian,
     solve,
 )
-from tamp.system.compilation import njit
+from tamp.system.compilation import INNER_KERNEL, njit
 
 ITERATIONS = 40
 """Steps from one start, at most."""
@@ -39,7 +38,7 @@ APART = 0.05
 """Radians or metres in some joint by which two solutions differ that count as two."""
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _rotation_vector(tool, target, error):
     """Write the rotation vector from tool to target into error[3:6], in the base's axes."""
     sx = sy = sz = 0.0
@@ -59,7 +58,7 @@ def _rotation_vector(tool, target, error):
     error[3], error[4], error[5] = factor * sx, factor * sy, factor * sz
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _descend(
     origins, slides, T_flange_tool, lower, upper, target, free, q, joints, tool, J, error, A, g
 ):

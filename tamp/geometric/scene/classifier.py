@@ -24,7 +24,7 @@ class Classifier(Protocol):
 
 
 @runtime_checkable
-class Undecided(Protocol):
+class NoClassifier(Protocol):
     """A generator that has no classifier yet; `cannot_tell` says why."""
 
     cannot_tell: str

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.geometric.scene.pose import Array, Pose
+
+LEVEL_COSINE = math.cos(math.radians(1.0))
+"""Cosine of the tilt up to which a face counts as level, a body as upright."""
 
 CONTACT_GAP = 0.001
 """Metres of air that the planner leaves under a resting body, so that resting never counts as a

@@ -1,4 +1,4 @@
-"""The convex hull and the centre of mass of a body, in its own frame."""
+"""The convex hull of a body, in its own frame."""
 
 from __future__ import annotations
 
@@ -46,16 +46,6 @@ def body_hull(body: Body) -> tuple[Float[Array, "n 3"], Triangles]:
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a - centre) < 0
     triangles[inward] = triangles[inward][:, ::-1]
     return vertices, triangles
-
-
-def centre_of_mass(body: Body) -> Float[Array, " 3"]:
-    """Return the centre of mass that its file gives, or of its parts, all of one density; in the
-    body's frame, shape (3,), metres.
-    """
-    if body.center_of_mass is not None:
-        return np.array(body.center_of_mass)
-    volumes, centres = zip(*(_mass(*_placed(part)) for part in body.parts), strict=True)
-    return np.average(np.array(centres), axis=0, weights=np.array(volumes))
 
 
 def part_mesh(part: Part) -> tuple[Float[Array, "n 3"], Triangles]:
@@ -111,13 +101,3 @@ def _ball(shape: Sphere) -> tuple[Array, Triangles]:
     inward = np.einsum("ij,ij->i", np.cross(b - a, c - a), a) < 0
     triangles[inward] = triangles[inward][:, ::-1]
     return vertices, triangles
-
-
-def _mass(vertices: Array, triangles: Triangles) -> tuple[float, Array]:
-    """Compute volume and centroid of a closed surface, by tetrahedra over a point inside."""
-    origin = vertices.mean(axis=0)
-    a, b, c = (vertices[triangles[:, i]] - origin for i in range(3))
-    volumes = np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))) / 6
-    total = float(volumes.sum())
-    centroid = (volumes[:, None] * (a + b + c) / 4).sum(axis=0) / total
-    return total, origin + centroid

@@ -21,6 +21,9 @@ SNAP_HEIGHT = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
 for `on`), metres."""
 
+WIDER_M = 5e-4
+"""Metres by which a width must exceed another one to be called larger."""
+
 BALANCE_MARGIN_M = 0.015
 """How far inside the supported part of an overhanging base the centre of mass must lie, metres."""
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.ray_kernels import cross_all, stretch
 from tamp.geometric.stability.shapes import once_a_shape
 
@@ -24,7 +25,7 @@ SEAM_WIDTH_M = 5e-4
 
 
 @dataclass(frozen=True)
-class Contact:
+class Crossing:
     """The crossing of a line with a solid: from `start` to `end` metres along it, with the outward
     normals (3,) there.
     """
@@ -101,14 +102,16 @@ class ConvexUnion:
         """Return outward normals (..., 3) of planes."""
         return self._normals[planes]
 
-    def solid_at(self, origin: Float[Array, " 3"], direction: Float[Array, " 3"]) -> Contact | None:
+    def solid_at(
+        self, origin: Float[Array, " 3"], direction: Float[Array, " 3"]
+    ) -> Crossing | None:
         """Find the stretch of solid that contains, or begins at, the origin of a line; None where
         there is none.
         """
         found, start, end, first, last = stretch(
             origin, direction, self._normals, self._offsets, self._first, SEAM_WIDTH_M
         )
-        return Contact(start, end, self._normals[first], self._normals[last]) if found else None
+        return Crossing(start, end, self._normals[first], self._normals[last]) if found else None
 
 
 @once_a_shape

@@ -11,9 +11,8 @@ import math
 import numpy as np
 from numba import types
 
-from tamp.system.compilation import njit
+from tamp.system.compilation import INNER_KERNEL, njit
 
-INNER = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 OUTER = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
 PARALLEL = 1e-12
@@ -25,7 +24,7 @@ LINES = types.Array(types.float64, 2, "A", readonly=True)
 LINE = types.Array(types.float64, 1, "A", readonly=True)
 
 
-@njit(**INNER)
+@njit(**INNER_KERNEL)
 def _cross(origin, direction, normals, offsets, begin, end):
     """Intersect a line with one part: where it enters and leaves, and the planes there."""
     enter, leave = -math.inf, math.inf

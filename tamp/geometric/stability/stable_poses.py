@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.scene.bounds import bounds
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Sphere
 from tamp.geometric.stability.facets import facet_normals, rotation_to_down, tipping_angle
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
+from tamp.geometric.stability.hulls import body_hull, outline
 from tamp.geometric.stability.shapes import once_a_shape
 
 if TYPE_CHECKING:

@@ -11,23 +11,18 @@ import numpy as np
 from tamp.geometric.context import Context
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Box, Cylinder
+from tamp.geometric.scene.scene import LEVEL_COSINE, Box, Cylinder
 from tamp.geometric.stability.hulls import part_mesh
+from tamp.geometric.stability.placement import WIDER_M
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.streams.hand_fit import FRICTION_CONE_RAD
 from tamp.stream import Rejection, RejectionKind
-
-LEVEL_COSINE = math.cos(math.radians(1.0))
-"""Cosine of the largest tilt with which a body counts as lying flat."""
 
 FINGER_THICKNESS_M = 0.002
 """A finger is thicker than this, metres: where its support is nearer, it gets not under a body."""
 
 SUPPORT_MARGIN_M = 0.02
 """So far around the body the support must reach for that, metres."""
-
-HALF_MILLIMETRE = 5e-4
-"""What a width must exceed the hand's opening by, metres."""
 
 
 def too_flat(context: Context, body: str, pose: Pose) -> Rejection | None:
@@ -45,7 +40,7 @@ def too_flat(context: Context, body: str, pose: Pose) -> Rejection | None:
 
     part = shape.parts[0]
     width = _width(part.shape, pose.rotation[2] @ part.pose.rotation)
-    if width is None or width <= context.robot.opening + HALF_MILLIMETRE:
+    if width is None or width <= context.robot.opening + WIDER_M:
         return None
 
     low, high = bounds(shape.parts, pose)

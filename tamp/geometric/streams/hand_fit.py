@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.collision.tables import Rows, pose_rows
+from tamp.geometric.collision.tables import TableRows, pose_rows
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Body
@@ -67,7 +67,7 @@ class GraspChecker:
 
     def __init__(self, body: Body, solid: ConvexUnion, robot: Robot) -> None:
         self._solid, self._robot = solid, robot
-        rows = Rows()
+        rows = TableRows()
         T_tool_hand = robot.T_hand_tool.inverse().matrix
         groups, parts, poses, along = [0], [], [], []
         fingers = zip(robot.finger_links, robot.fingers, strict=True)

@@ -56,7 +56,7 @@ def body_poses(call: Call) -> dict[str, Pose]:
 
 
 @dataclass(frozen=True)
-class Level:
+class LevelChecker:
     """A checker of motions in which the body in the hand also stays level.
 
     Attributes:
@@ -103,7 +103,7 @@ def plan_loaded_pick(
 
     stand, out = np.array(base.array), reach.lift[-1]
     carried = whole.collisions.arrangement(others, whole.attachment(grasp))
-    level = Level(context, carried, grasp, pose.rotation[2])
+    level = LevelChecker(context, carried, grasp, pose.rotation[2])
     among = whole.collisions.arrangement({**others, body: pose})
     for effort in range(MAX_LEVEL_EFFORT + 1):
         planned = plan_arm(

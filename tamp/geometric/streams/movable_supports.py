@@ -15,10 +15,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.context import Context
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.outline import outline
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Cavity, Surface
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass
+from tamp.geometric.scene.scene import LEVEL_COSINE, Cavity, Surface
+from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.placement import (
     BALANCE_MARGIN_M,
     Placement,
@@ -32,9 +33,6 @@ from tamp.stream import Call, Rejection, RejectionKind
 
 if TYPE_CHECKING:
     from jaxtyping import Float
-
-LEVEL_COSINE = math.cos(math.radians(1.0))
-"""Cosine of the tilt from which on a place carries nothing."""
 
 STACK_MARGIN_M = 0.008
 """Metres by which a centre of mass must be inside of all bases and places below it."""

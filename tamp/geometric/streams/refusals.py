@@ -24,7 +24,7 @@ from tamp.geometric.scene.scene import (
     Surface,
 )
 from tamp.geometric.stability.hulls import body_hull, part_mesh
-from tamp.geometric.stability.placement import room_above
+from tamp.geometric.stability.placement import WIDER_M, room_above
 from tamp.geometric.stability.slices import cut, distances
 from tamp.geometric.stability.stable_poses import Face, facets, fits
 from tamp.geometric.streams.hand_fit import FRICTION_CONE_RAD
@@ -33,9 +33,6 @@ from tamp.stream import Rejection, RejectionKind
 
 SURE_SHARE_OF_WIDTH = 0.97
 """Of a width measured on the polyhedron that stands for a curved body, so much is certain."""
-
-HALF_MILLIMETRE = 5e-4
-"""What a width must exceed another one by to be called larger, metres."""
 
 MOST_FACETS = 300
 """Ways up that are looked at for a proof; a body with more is taken for a curved one, of which
@@ -69,7 +66,7 @@ def no_grasp(body: Body, opening: float) -> Rejection:
             kind=RejectionKind.NO_GRASP,
         )
 
-    if width > opening + HALF_MILLIMETRE:
+    if width > opening + WIDER_M:
         what = f"no grasp: every width is over the hand's {opening * 100:.0f} cm"
         return Rejection(what, kind=RejectionKind.TOO_LARGE)
 
@@ -166,7 +163,7 @@ def covered(context: Context, body: str, region: Surface | Cavity) -> Rejection 
     grid = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     T_world_region = context.scene.world_pose(region)
     places = T_world_region.apply(np.column_stack([grid, np.zeros(len(grid))]))
-    if np.ptp(places[:, 2]) > HALF_MILLIMETRE:
+    if np.ptp(places[:, 2]) > WIDER_M:
         return None
 
     least, names = np.full(len(grid), np.inf), list[str]()
@@ -223,7 +220,7 @@ def _could_fit(body: Body, room: float, cavity: Cavity | None) -> bool:
     sides = facets(body, MOST_FACETS)
     if sides is None:
         return True
-    low = [side for side in sides if SURE_SHARE_OF_WIDTH * side.extent - HALF_MILLIMETRE <= room]
+    low = [side for side in sides if SURE_SHARE_OF_WIDTH * side.extent - WIDER_M <= room]
     return any(
         cavity is None or fits(side, [length / SURE_SHARE_OF_WIDTH for length in cavity.size])
         for side in low

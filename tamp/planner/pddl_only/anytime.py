@@ -17,7 +17,7 @@ from tamp.symbolic.search.search import Plan, Reason, search
 from tamp.system.deadline import Deadline, OutOfTime, counted
 from tamp.system.interrupts import Interrupter
 
-LADDER = (
+SEARCH_LADDER = (
     ("wastar", "ff+landmarks", 5.0),
     ("wastar", "ff+landmarks", 2.0),
     ("wastar", "ff", 1.0),
@@ -26,7 +26,7 @@ LADDER = (
 """Search, heuristic and weight, one after the other; the last one proves that nothing is cheaper.
 """
 
-SHARE = 0.25
+TIME_SHARE_PER_SEARCH = 0.25
 """The part of the remaining time that a search before the last one gets."""
 
 
@@ -57,9 +57,9 @@ def optimize_symbolic(
         best = replace(best, bound=min(start.bound, best.cost))
         improved(best)
 
-        for name, heuristic, weight in LADDER:
+        for name, heuristic, weight in SEARCH_LADDER:
             last = name == "astar"
-            within = deadline if last else Deadline(SHARE * deadline.left())
+            within = deadline if last else Deadline(TIME_SHARE_PER_SEARCH * deadline.left())
             while best.bound < best.cost:
                 started = counted()
                 found = search(

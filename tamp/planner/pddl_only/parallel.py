@@ -11,11 +11,11 @@ from tamp.planner.pddl_only.solve import SymbolicSolution, choose, solve_symboli
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.search.heuristics.loops.selection import prepare as prepare_loops
 from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
-from tamp.symbolic.search.operators import NONE, Operator
+from tamp.symbolic.search.operators import NO_FACTS, Operator
 from tamp.system.deadline import Deadline
 from tamp.system.race import Tell, race
 
-ANY = (
+SATISFICING_SEARCHES = (
     ("greedy", "ff+landmarks"),
     ("wastar", "ff+landmarks"),
     ("eager", "ff"),
@@ -24,7 +24,7 @@ ANY = (
 )
 """Searches that differ in what they find easy."""
 
-OPTIMAL = (("astar", "lmcut"), ("astar", "hmax"), ("astar", "blind"))
+OPTIMAL_SEARCHES = (("astar", "lmcut"), ("astar", "hmax"), ("astar", "blind"))
 """Those whose plans are the cheapest."""
 
 
@@ -32,7 +32,9 @@ def portfolio(search: str | None, heuristic: str | None, jobs: int) -> list[tupl
     """Return the search that was asked for, and up to `jobs - 1` others that promise as much."""
     first = choose(search, heuristic)
     optimal = first[0] == "astar" and ADMISSIBLE.issuperset(first[1].split("+"))
-    return list(dict.fromkeys((first, *(OPTIMAL if optimal else ANY))))[:jobs]
+    return list(dict.fromkeys((first, *(OPTIMAL_SEARCHES if optimal else SATISFICING_SEARCHES))))[
+        :jobs
+    ]
 
 
 def solve_symbolic_parallel(
@@ -99,4 +101,6 @@ def solve_symbolic_parallel(
 
 def _bare(operator: Operator) -> Operator:
     """Keep of an operator what a report reads."""
-    return Operator(operator.name, operator.arguments, NONE, NONE, NONE, NONE, operator.cost)
+    return Operator(
+        operator.name, operator.arguments, NO_FACTS, NO_FACTS, NO_FACTS, NO_FACTS, operator.cost
+    )

@@ -16,42 +16,49 @@ from tamp.symbolic.search.heuristics.registry import ADMISSIBLE
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.symbolic.search.replay import REFUTED, violation
-from tamp.symbolic.search.search import SEARCHES, Plan, Reason, Result, search, split_heuristics
+from tamp.symbolic.search.search import (
+    SEARCHES,
+    Plan,
+    Reason,
+    SearchResult,
+    search,
+    split_heuristics,
+)
 from tamp.system.deadline import Deadline, OutOfTime, counted
 from tamp.system.garbage import infrequent_collection
 from tamp.system.interrupts import Interrupter
 
-SEARCH = "greedy"
+DEFAULT_SEARCH = "greedy"
 """The search when none is named."""
 
-SHORTENING = 500_000
+SHORTENING_WORK = 500_000
 """What a search for a shorter plan goes through at most, in states times preconditions of all
 operators: a tenth of a second."""
 
-STRAIGHT = 600
-"""Expanded states of a greedy search that went straight to the goal: then `AS_MANY` times as many,
-each of which may take ten times as long, are worth a plan that takes no detours."""
+STRAIGHT_SEARCH_STATES = 600
+"""Expanded states of a greedy search that went straight to the goal: then some times as many, each
+of which may take ten times as long, are worth a plan that takes no detours:"""
 
-AS_MANY = 4
+STATES_AFTER_STRAIGHT_FACTOR = 4
 
-DEAR = 1.5
+COSTLY_PLAN_FACTOR = 1.5
 """Cost of a plan, as a multiple of the initial state's estimate, from which on a cheaper one is
 looked for as long as the search makes progress. One that costs no more than the estimate is left
 alone."""
 
-FOR_DEAR = 5
+COSTLY_PLAN_STATES_FACTOR = 5
 """How many times as many states as the first plan took are then seen at most."""
 
-ENDURANCE = 2
+STALLED_STATES_PER_ACTION = 2
 """States without progress after which that is given up, for each action of the first plan."""
 
-FEWEST = 2
+MIN_STATES_PER_ACTION = 2
 """States for each action of the first plan below which no search for another one is begun."""
 
-WEIGHTS = (2.0, 5.0)
+SHORTENING_WEIGHTS = (2.0, 5.0)
 """Of the estimates in the search for a shorter plan: the next where the last has found none."""
 
-OTHERS = (("eager", "ff"), ("wastar", "blind"))
+FALLBACK_SEARCHES = (("eager", "ff"), ("wastar", "blind"))
 """Searches and heuristics that go on where a plan does not hold when it is replayed."""
 
 OUTCOMES = {
@@ -127,7 +134,7 @@ def choose(search: str | None, heuristic: str | None) -> tuple[str, str]:
     """
     if search is not None and search not in SEARCHES:
         raise InputError(f"unknown search '{search}'", found=search, choices=SEARCHES)
-    search = search or SEARCH
+    search = search or DEFAULT_SEARCH
     heuristic = heuristic or ("lmcut" if search == "astar" else "ff+landmarks")
     split_heuristics(heuristic)
     return search, heuristic
@@ -176,16 +183,18 @@ def _solve(
     ready = counted()
     refuted: list[str] = []
 
-    for way in ((name, heuristic), *OTHERS):
+    for way in ((name, heuristic), *FALLBACK_SEARCHES):
         found = search(instantiated, search=way[0], heuristic=way[1], deadline=deadline, seed=seed)
         reason = refutation(task, found.plan)
         if reason is None:
-            found = _shortened(task, instantiated, found, deadline) if name == SEARCH else found
+            found = (
+                _shortened(task, instantiated, found, deadline) if name == DEFAULT_SEARCH else found
+            )
             name, heuristic = way
             break
         refuted.append(reason)
     else:
-        found = Result(None, Reason.LIMIT, found.expanded, found.evaluated)
+        found = SearchResult(None, Reason.LIMIT, found.expanded, found.evaluated)
 
     done = counted()
     outcome = (
@@ -214,8 +223,8 @@ def _solve(
 
 
 def _shortened(
-    task: Task, instantiated: InstantiatedTask, found: Result, deadline: Deadline
-) -> Result:
+    task: Task, instantiated: InstantiatedTask, found: SearchResult, deadline: Deadline
+) -> SearchResult:
     """Look for a cheaper plan than greedy search's, as long as that is quickly done.
 
     Windows of a plan cannot be cut where each step enables the next; another search finds a plan of
@@ -226,14 +235,16 @@ def _shortened(
     length, cost = len(found.plan.operators), sum(one.cost for one in found.plan.operators)
     if cost <= found.estimate:
         return found
-    limits = dict.fromkeys(WEIGHTS, _worthwhile_states(instantiated, found))
+    limits = dict.fromkeys(SHORTENING_WEIGHTS, _worthwhile_states(instantiated, found))
     endurance = None
-    if cost >= DEAR * found.estimate:
-        limits[WEIGHTS[0]] = max(limits[WEIGHTS[0]], FOR_DEAR * found.expanded)
-        endurance = max(ENDURANCE * length, limits[WEIGHTS[1]])
+    if cost >= COSTLY_PLAN_FACTOR * found.estimate:
+        limits[SHORTENING_WEIGHTS[0]] = max(
+            limits[SHORTENING_WEIGHTS[0]], COSTLY_PLAN_STATES_FACTOR * found.expanded
+        )
+        endurance = max(STALLED_STATES_PER_ACTION * length, limits[SHORTENING_WEIGHTS[1]])
 
     for weight, limit in limits.items():
-        if limit < FEWEST * length:
+        if limit < MIN_STATES_PER_ACTION * length:
             break
         try:
             better = search(
@@ -254,12 +265,15 @@ def _shortened(
     return found
 
 
-def _worthwhile_states(instantiated: InstantiatedTask, found: Result) -> int:
+def _worthwhile_states(instantiated: InstantiatedTask, found: SearchResult) -> int:
     """Return how many states a search for a cheaper plan is worth, whatever that costs."""
     entries = max(1, sum(1 + len(operator.positive) for operator in instantiated.operators))
-    limit = SHORTENING // entries
-    if found.expanded <= STRAIGHT:
-        limit = max(limit, min(AS_MANY * found.expanded, 10 * SHORTENING // entries))
+    limit = SHORTENING_WORK // entries
+    if found.expanded <= STRAIGHT_SEARCH_STATES:
+        limit = max(
+            limit,
+            min(STATES_AFTER_STRAIGHT_FACTOR * found.expanded, 10 * SHORTENING_WORK // entries),
+        )
     return limit
 
 

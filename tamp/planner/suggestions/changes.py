@@ -15,23 +15,23 @@ from tamp.planner.problem import Problem
 from tamp.symbolic.pddl.atoms import atoms
 from tamp.symbolic.pddl.structs import And, Atom, Formula
 
-SMALLER = (
+SHRINK_FACTORS = (
     (0.75, "a quarter smaller", 2),
     (0.5, "half its size", 3),
     (0.3, "a third of its size", 4),
 )
 """Factors by which a body is scaled, in words, and how large a change that is."""
 
-LARGER = 1.5
+PLACE_GROWTH_FACTOR = 1.5
 """Factor by which the sides of a place are scaled."""
 
-HANDY = (0.3, 1.1)
+HANDY_HEIGHTS_M = (0.3, 1.1)
 """Heights between which nothing is too low or too high, metres."""
 
-MIDDLE = 0.75
+MIDDLE_HEIGHT_M = 0.75
 """The height to which something is brought that is not, metres."""
 
-LIFTED = 0.6
+MAX_MOVABLE_EDGE_M = 0.6
 """A fixed body is thought of as movable when no edge is longer than this, metres."""
 
 
@@ -73,7 +73,7 @@ def changes(problem: Problem) -> Iterator[Change]:
             )
 
         if body.movable and (name in wanted or not idle):
-            for factor, how, size in SMALLER:
+            for factor, how, size in SHRINK_FACTORS:
                 yield Change(
                     f"if {name} were {how}", (name,), size, _with(scene, _scaled(body, factor))
                 )
@@ -112,10 +112,12 @@ def _brought(scene: Scene, body: Body) -> Iterator[Change]:
 
     heights = [(body.pose @ place.pose).position[2] for place in places]
     x, y, z = body.pose.position
-    if max(heights) < HANDY[0] or min(heights) > HANDY[1]:
-        lifted = replace(body.pose, position=(x, y, z + MIDDLE - sum(heights) / len(heights)))
+    if max(heights) < HANDY_HEIGHTS_M[0] or min(heights) > HANDY_HEIGHTS_M[1]:
+        lifted = replace(
+            body.pose, position=(x, y, z + MIDDLE_HEIGHT_M - sum(heights) / len(heights))
+        )
         yield Change(
-            f"if {body.name} were {MIDDLE} m high",
+            f"if {body.name} were {MIDDLE_HEIGHT_M} m high",
             _around(scene, body),
             2,
             _moved(scene, body, lifted),
@@ -178,7 +180,7 @@ def _below(scene: Scene, body: Body) -> str | None:
 
 def _small(body: Body) -> bool:
     low, high = bounds(body.parts, body.pose)
-    return bool((high - low).max() <= LIFTED)
+    return bool((high - low).max() <= MAX_MOVABLE_EDGE_M)
 
 
 def _with(scene: Scene, body: Body) -> Scene:
@@ -212,7 +214,13 @@ def _larger(body: Body, place: Surface | Cavity) -> Body | None:
         for part in body.parts
     ):
         return None
-    factors = np.array((LARGER, LARGER, LARGER if isinstance(place, Cavity) else 1.0))
+    factors = np.array(
+        (
+            PLACE_GROWTH_FACTOR,
+            PLACE_GROWTH_FACTOR,
+            PLACE_GROWTH_FACTOR if isinstance(place, Cavity) else 1.0,
+        )
+    )
 
     def moved(pose: Pose) -> Pose:
         x, y, z = np.multiply(pose.position, factors)
@@ -227,7 +235,7 @@ def _larger(body: Body, place: Surface | Cavity) -> Body | None:
         replace(
             one,
             pose=moved(one.pose),
-            size=(one.size[0] * LARGER, one.size[1] * LARGER),
+            size=(one.size[0] * PLACE_GROWTH_FACTOR, one.size[1] * PLACE_GROWTH_FACTOR),
             clearance=one.clearance * float(factors[2]),
         )
         for one in body.surfaces
@@ -236,7 +244,11 @@ def _larger(body: Body, place: Surface | Cavity) -> Body | None:
         replace(
             one,
             pose=moved(one.pose),
-            size=(one.size[0] * LARGER, one.size[1] * LARGER, one.size[2] * float(factors[2])),
+            size=(
+                one.size[0] * PLACE_GROWTH_FACTOR,
+                one.size[1] * PLACE_GROWTH_FACTOR,
+                one.size[2] * float(factors[2]),
+            ),
         )
         for one in body.cavities
     )

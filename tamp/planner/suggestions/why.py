@@ -32,7 +32,7 @@ ENOUGH_SUGGESTIONS = 3
 SHOWN_FAILURES = 8
 """Changes that did not help which are listed in words."""
 
-PROVEN = (Outcome.INFEASIBLE,)
+PROVEN_OUTCOMES = (Outcome.INFEASIBLE,)
 """Outcomes that no other seed changes."""
 
 
@@ -173,7 +173,7 @@ class _Trial:
             solution.outcome is Outcome.EXHAUSTED
             or solution.seconds.get("total", 0.0) >= self._budget
         )
-        proven = solution.outcome in PROVEN
+        proven = solution.outcome in PROVEN_OUTCOMES
         self._unsolved = set(self._seeds if proven else self._seeds[:1] if enough else ())
         self._unchanged: list[int] = []
         self._found: list[tuple[int, Suggestion]] = []

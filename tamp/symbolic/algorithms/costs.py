@@ -9,11 +9,8 @@ from typing import Any, cast
 
 from tamp.errors import InputError
 from tamp.symbolic.algorithms.bound_stream import Objects
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Function
-
-MARK = "#"
-"""Placeholders begin with it, as in
-tamp.symbolic.algorithms.optimistic.optimistic_instantiation."""
 
 UNKNOWN = 1.0
 """What a placeholder's cost is taken for until the function was asked once."""

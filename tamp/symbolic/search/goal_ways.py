@@ -26,7 +26,7 @@ Way = frozenset[Literal]
 
 
 @dataclass(frozen=True)
-class Part:
+class GoalPart:
     """A part of the goal: the literal that names it, and all ways in which it can hold.
 
     Attributes:
@@ -38,10 +38,10 @@ class Part:
 
     literal: Literal
     ways: tuple[Way, ...]
-    choices: tuple[tuple[Part, ...], ...] = ()
+    choices: tuple[tuple[GoalPart, ...], ...] = ()
 
 
-def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
+def goal_parts(instantiated: InstantiatedTask) -> list[GoalPart]:
     """List the goal's conjuncts, universal ones taken apart, each with its ways to hold."""
     rules = _by_head(instantiated.axioms)
     literals = [(fact, True) for fact in sorted(instantiated.goal.positive)]
@@ -55,17 +55,17 @@ def goal_parts(instantiated: InstantiatedTask) -> list[Part]:
     return [_part(literal, rules, auxiliary, opener) for literal in opened]
 
 
-def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str], opener: _Opener) -> Part:
+def _part(literal: Literal, rules: Rules, auxiliary: Iterable[str], opener: _Opener) -> GoalPart:
     """Open a conjunct; `opener` opens the choices of all of them, whose work is bounded as one."""
     fact, wanted = literal
-    choices: list[tuple[Part, ...]] = []
+    choices: list[tuple[GoalPart, ...]] = []
     if wanted and fact[0] in auxiliary:
         for axiom in rules.get(fact, []):
             opened = dict.fromkeys(
                 part for one in _body(axiom) for part in _opened(one, rules, auxiliary, (fact,))
             )
-            choices.append(tuple(Part(one, tuple(opener.ways(one))) for one in opened))
-    return Part(literal, tuple(_Opener(rules).ways(literal)), tuple(choices))
+            choices.append(tuple(GoalPart(one, tuple(opener.ways(one))) for one in opened))
+    return GoalPart(literal, tuple(_Opener(rules).ways(literal)), tuple(choices))
 
 
 Rules = dict[Fact, list[Axiom]]

@@ -13,7 +13,7 @@ from itertools import combinations
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.compatible_ways import hold_together
-from tamp.symbolic.search.goal_ways import Literal, Part, goal_parts
+from tamp.symbolic.search.goal_ways import GoalPart, Literal, goal_parts
 from tamp.symbolic.search.lasting import lasting
 from tamp.symbolic.search.operators import InstantiatedTask, Operator
 from tamp.system.deadline import Deadline
@@ -22,7 +22,7 @@ MOST_PAIRS = 4_000_000
 """Pairs of facts of the largest task that is looked at: 2,000 facts take some seconds."""
 
 
-class Undecided(Exception):
+class MutexUndecided(Exception):
     """The task is too large, or the time is up: nothing is known."""
 
 
@@ -38,7 +38,7 @@ def excluded(instantiated: InstantiatedTask, deadline: Deadline) -> tuple[Litera
         return Mutexes(
             replace(instantiated, operators=lasting(instantiated).operators), parts, deadline
         ).conflict()
-    except Undecided:
+    except MutexUndecided:
         return None
 
 
@@ -51,11 +51,11 @@ class Mutexes:
         deadline: When to give up.
 
     Raises:
-        Undecided: There are too many facts, or the time was up.
+        MutexUndecided: There are too many facts, or the time was up.
     """
 
     def __init__(
-        self, instantiated: InstantiatedTask, parts: list[Part], deadline: Deadline
+        self, instantiated: InstantiatedTask, parts: list[GoalPart], deadline: Deadline
     ) -> None:
         self._parts, self._deadline = parts, deadline
         named = [
@@ -72,7 +72,7 @@ class Mutexes:
         }
 
         if len(self._number) ** 2 > MOST_PAIRS:
-            raise Undecided
+            raise MutexUndecided
 
         self._with = [0] * len(self._number)
         self._lasting = (1 << len(facts)) - 1
@@ -113,13 +113,13 @@ class Mutexes:
                 kept = others
         return tuple(self._parts[k].literal for k in kept)
 
-    def _possible(self, part: Part) -> list[tuple[int, ...]]:
+    def _possible(self, part: GoalPart) -> list[tuple[int, ...]]:
         return [way for way in map(self._numbers, part.ways) if self._consistent(way)]
 
     def _hold_together(self, possible: list[list[tuple[int, ...]]]) -> bool:
         return hold_together(possible, self._partners, self._look)
 
-    def _holds(self, parts: tuple[Part, ...]) -> bool:
+    def _holds(self, parts: tuple[GoalPart, ...]) -> bool:
         """Check that these may hold together, as far as pairs show it."""
         return self._hold_together([self._possible(part) for part in parts])
 
@@ -260,4 +260,4 @@ class Mutexes:
 
     def _look(self) -> None:
         if self._deadline.passed:
-            raise Undecided
+            raise MutexUndecided

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from tamp.symbolic.pddl.structs import Fact
 
 Facts = frozenset[Fact]
-NONE: Facts = frozenset()
+NO_FACTS: Facts = frozenset()
 
 ANY = "(any)"
 """The predicate of static facts that say that an object is there, of which no condition says
@@ -42,7 +42,7 @@ class ConditionalEffect:
     negative: Facts
     added: Facts
     deleted: Facts
-    static: Facts = NONE
+    static: Facts = NO_FACTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Operator:
     added: Facts
     deleted: Facts
     cost: float = 1.0
-    static: Facts = NONE
+    static: Facts = NO_FACTS
     guards: Sequence[Guard] = ()
     conditional: tuple[ConditionalEffect, ...] = ()
 
@@ -87,7 +87,7 @@ class Axiom:
     head: Fact
     positive: Facts
     negative: Facts
-    static: Facts = NONE
+    static: Facts = NO_FACTS
     stratum: int = 0
 
 
@@ -98,8 +98,8 @@ class Goal:
     """
 
     positive: Facts
-    negative: Facts = NONE
-    static: Facts = NONE
+    negative: Facts = NO_FACTS
+    static: Facts = NO_FACTS
 
 
 @dataclass(frozen=True, slots=True)

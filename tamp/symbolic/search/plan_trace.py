@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import derive, supports
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
-from tamp.symbolic.search.operators import NONE, Facts, Guard, InstantiatedTask, Operator
+from tamp.symbolic.search.operators import NO_FACTS, Facts, Guard, InstantiatedTask, Operator
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class TracedStep:
     """One operator of a plan.
 
     Attributes:
@@ -37,17 +37,17 @@ class Step:
     operator: Operator
     state: Facts
     static: Facts
-    derived: Facts = NONE
-    read: Facts = NONE
-    heads: Facts = NONE
-    added: Facts = NONE
-    deleted: Facts = NONE
+    derived: Facts = NO_FACTS
+    read: Facts = NO_FACTS
+    heads: Facts = NO_FACTS
+    added: Facts = NO_FACTS
+    deleted: Facts = NO_FACTS
     guards: tuple[Guard, ...] = ()
-    unguarded: Facts = NONE
+    unguarded: Facts = NO_FACTS
 
 
 @dataclass(frozen=True, slots=True)
-class End:
+class FinalState:
     """The state in the end, and what the goal rests on there: static facts, those of them in
     derivations, fluents.
     """
@@ -64,8 +64,8 @@ class Trace:
     well.
     """
 
-    steps: tuple[Step, ...]
-    end: End
+    steps: tuple[TracedStep, ...]
+    end: FinalState
     open: bool = False
 
 
@@ -85,7 +85,7 @@ def trace(
         ValueError: An operator is not applicable, or the goal does not hold in the end.
     """
     state = instantiated.initial
-    steps: list[Step] = []
+    steps: list[TracedStep] = []
     ways = Counter(axiom.head for axiom in instantiated.axioms)
     several = frozenset(head for head, count in ways.items() if count > 1)
     open_ = False
@@ -98,7 +98,7 @@ def trace(
     if not instantiated.goal.positive <= holds or not instantiated.goal.negative.isdisjoint(holds):
         raise ValueError("the goal does not hold in the end")
     goal = supports(why, instantiated.goal.positive)
-    end = End(state, instantiated.goal.static | goal.static, goal.static, goal.read)
+    end = FinalState(state, instantiated.goal.static | goal.static, goal.static, goal.read)
     return Trace(tuple(steps), end, open_ or not several.isdisjoint(goal.heads))
 
 
@@ -129,7 +129,7 @@ def _applied(
     operator: Operator,
     state: Facts,
     price: Mapping[Fact, float] | None = None,
-) -> tuple[Step, Facts]:
+) -> tuple[TracedStep, Facts]:
     """Apply the operator in a state; return its step and the state after it. ValueError where it
     is not applicable.
     """
@@ -161,7 +161,7 @@ def _applied(
     gone = state - after
     own = frozenset(static | derived)
 
-    return Step(
+    return TracedStep(
         operator, state, own | lifting, derived, read, heads, added, gone, guards, own
     ), after
 

@@ -23,7 +23,7 @@ from tamp.system.deadline import Deadline
 
 
 @dataclass(frozen=True, slots=True)
-class Result:
+class SearchResult:
     """The result of a search.
 
     Attributes:
@@ -78,7 +78,7 @@ def search(
     below: float = math.inf,
     audit: Callable[[], bool] | None = None,
     seed: int = 0,
-) -> Result:
+) -> SearchResult:
     """Search for a plan.
 
     Args:
@@ -108,7 +108,7 @@ def search(
         raise InputError(f"a limit of the cost is for wastar and astar, not for '{search}'")
     names = split_heuristics(heuristic)
     if not instantiated.goal.positive <= instantiated.reachable | instantiated.initial:
-        return Result(None, Reason.UNSOLVABLE, 0, 0, math.inf)
+        return SearchResult(None, Reason.UNSOLVABLE, 0, 0, math.inf)
     successors = Successors(instantiated, price if price is not None else {})
 
     packable = search in ("wastar", "greedy") and fits(names, successors)
@@ -141,7 +141,7 @@ def search(
         finally:
             first.too_slow = None  # it holds the run, which holds it
 
-    return Result(
+    return SearchResult(
         plan,
         reason,
         run.expanded,

@@ -26,7 +26,7 @@ from tamp.geometric.collision.tables import (
     SIZE,
     VERTEX_COUNT,
     VERTICES,
-    Rows,
+    TableRows,
     pose_rows,
     world_box,
 )
@@ -52,7 +52,7 @@ OFF_CENTRE = hull(cuboid((0.2, 0.4, 0.6)) + np.array([1.0, 2.0, 3.0]))
 def test_a_row_has_the_box_and_the_sphere_around_a_part(
     shape: Shape, kind: int, half: list, centre: list, radius: float, margin: float
 ) -> None:
-    row = Rows().row(Part(shape))
+    row = TableRows().row(Part(shape))
     assert row.shape == (PART_COLUMNS,) and row[KIND] == kind
     assert row[SIZE : SIZE + 3] == pytest.approx(half) and row[
         CENTRE : CENTRE + 3
@@ -63,7 +63,7 @@ def test_a_row_has_the_box_and_the_sphere_around_a_part(
 
 
 def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
-    rows = Rows()
+    rows = TableRows()
     first, second = rows.row(Part(OFF_CENTRE)), rows.row(Part(hull(cuboid((1, 1, 1)))))
     assert (first[VERTICES], first[VERTEX_COUNT], second[VERTICES], second[VERTEX_COUNT]) == (
         0,
@@ -83,7 +83,7 @@ def test_hulls_point_to_their_vertices_and_covers_to_their_leaves() -> None:
 
 
 def test_nothing_collected_is_empty_tables() -> None:
-    assert Rows().vertices().shape == (3, 0) and Rows().leaves().shape == (0, 4)
+    assert TableRows().vertices().shape == (3, 0) and TableRows().leaves().shape == (0, 4)
 
 
 def test_a_pose_is_a_rotation_row_by_row_and_a_position() -> None:
@@ -98,7 +98,7 @@ def test_the_worlds_box_holds_the_part_and_is_exact_for_boxes(
 ) -> None:
     pose = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (roll, pitch, yaw))
     for shape in (Box((0.2, 0.4, 0.6)), OFF_CENTRE, Cylinder(0.1, 0.3)):
-        low, high = world_box(Rows().row(Part(shape))[None], pose_rows(pose.matrix[None]))
+        low, high = world_box(TableRows().row(Part(shape))[None], pose_rows(pose.matrix[None]))
         least, most = bounds([Part(shape)], pose)
         assert (low[0] <= least + 1e-12).all() and (high[0] >= most - 1e-12).all()
         if not isinstance(shape, Cylinder):

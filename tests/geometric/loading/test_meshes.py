@@ -15,7 +15,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.decomposition import MOST_PIECES, decompose
 from tamp.geometric.loading.mesh_pieces import compute_pieces, mesh_pieces, pieces_name
 from tamp.geometric.loading.mesh_surface import open_edges, read_surface
-from tamp.geometric.loading.meshes import Mesh, find_mesh, load_mesh
+from tamp.geometric.loading.meshes import MeshGeometry, find_mesh, load_mesh
 from tamp.geometric.scene.convex import hull_of
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere, Visual
@@ -90,7 +90,7 @@ def on_surface(vertices: Array, faces: Array, count: int) -> Array:
     )
 
 
-def hulls(mesh: Mesh) -> list[Array]:
+def hulls(mesh: MeshGeometry) -> list[Array]:
     return [part.shape.vertices for part in mesh.parts if isinstance(part.shape, Hull)]
 
 

@@ -10,15 +10,15 @@ from typing import Any
 import pytest
 
 from tamp.errors import InputError
-from tamp.geometric.loading.yaml_nodes import Node
+from tamp.geometric.loading.yaml_nodes import YamlNode
 from tests.geometric.making import yaml
 
 
 @pytest.fixture
-def value(tmp_path: Path) -> Callable[[str], Node]:
+def value(tmp_path: Path) -> Callable[[str], YamlNode]:
     """The value of the key `v` in line 2 of a file."""
 
-    def make(text: str) -> Node:
+    def make(text: str) -> YamlNode:
         return yaml(tmp_path, f"first: 1\nv: {text}\n").mapping()["v"]
 
     return make
@@ -37,12 +37,12 @@ def value(tmp_path: Path) -> Callable[[str], Node]:
     ],
 )
 def test_angles_are_radians_unless_they_say_degrees(
-    value: Callable[[str], Node], text: str, radians: float
+    value: Callable[[str], YamlNode], text: str, radians: float
 ) -> None:
     assert value(text).angle() == pytest.approx(radians)
 
 
-def test_a_plain_angle_beyond_a_turn_was_meant_in_degrees(value: Callable[[str], Node]) -> None:
+def test_a_plain_angle_beyond_a_turn_was_meant_in_degrees(value: Callable[[str], YamlNode]) -> None:
     with pytest.raises(
         InputError, match=r"v: 90 radians are more than a full turn. Write '90 deg' or 'rad'"
     ) as told:
@@ -78,14 +78,14 @@ def test_a_plain_angle_beyond_a_turn_was_meant_in_degrees(value: Callable[[str],
     ],
 )
 def test_what_is_wrong_is_said(
-    value: Callable[[str], Node], text: str, read: Callable[[Node], Any], words: str
+    value: Callable[[str], YamlNode], text: str, read: Callable[[YamlNode], Any], words: str
 ) -> None:
     with pytest.raises(InputError, match=words) as told:
         read(value(text))
     assert told.value.line == 2 and str(told.value.file).endswith("given.yaml")
 
 
-def test_a_misspelt_word_gets_its_neighbour(value: Callable[[str], Node]) -> None:
+def test_a_misspelt_word_gets_its_neighbour(value: Callable[[str], YamlNode]) -> None:
     with pytest.raises(
         InputError, match=r"unknown colour 'gren'.*Choices: red, green. Did you mean 'green'?"
     ):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from tamp.geometric.scene.classifier import Classifier, Unanswered, Undecided, probability
+from tamp.geometric.scene.classifier import Classifier, NoClassifier, Unanswered, probability
 from tamp.geometric.scene.scene import Scene
 from tests.geometric.making import scene, table
 
@@ -74,5 +74,5 @@ def test_who_is_a_classifier_and_who_is_none_yet() -> None:
     class Silent:
         cannot_tell = "it was trained without labels"
 
-    assert isinstance(Answering(1.0), Classifier) and not isinstance(Answering(1.0), Undecided)
-    assert isinstance(Silent(), Undecided) and not isinstance(Silent(), Classifier)
+    assert isinstance(Answering(1.0), Classifier) and not isinstance(Answering(1.0), NoClassifier)
+    assert isinstance(Silent(), NoClassifier) and not isinstance(Silent(), Classifier)

@@ -1,4 +1,4 @@
-"""Hulls and centres of mass of bodies against textbook volumes and centroids."""
+"""Hulls of bodies against textbook volumes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
-from tamp.geometric.stability.hulls import CYLINDER_SIDES, body_hull, centre_of_mass, part_mesh
-from tests.geometric.making import cuboid, hull
+from tamp.geometric.stability.hulls import CYLINDER_SIDES, body_hull, part_mesh
+from tests.geometric.making import hull
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
 
@@ -59,33 +59,3 @@ def test_the_hull_of_two_parts_spans_what_is_between_them() -> None:
         1.0 * 0.1 * 0.1
     )  # in the body's frame, not the world's
     assert vertices.mean(axis=0) == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
-
-
-def test_the_centre_of_two_parts_is_weighed_by_volume() -> None:
-    uneven = of(
-        Part(Box((0.1, 0.1, 0.1)), Pose((0, 0, 0))), Part(Box((0.1, 0.1, 0.3)), Pose((0, 0, 0.4)))
-    )
-    assert centre_of_mass(uneven) == pytest.approx([0.0, 0.0, 0.3])  # 1 at 0 and 3 at 0.4
-
-
-@pytest.mark.parametrize("at", [(0.0, 0.0, 0.0), (3.0, -2.0, 1.0)])
-def test_the_centre_of_a_tetrahedron_is_the_mean_of_its_corners(
-    at: tuple[float, float, float],
-) -> None:
-    assert centre_of_mass(of(Part(hull(TETRAHEDRON), Pose(at)))) == pytest.approx(
-        np.array(at) + 0.25
-    )
-
-
-@pytest.mark.parametrize(
-    "shape", [Box((0.2, 0.3, 0.4)), Cylinder(0.1, 0.5), Sphere(0.2), hull(cuboid((1, 2, 3)))]
-)
-def test_the_centre_of_what_is_symmetric_is_its_middle(shape: Shape) -> None:
-    pose = Pose.from_xyz_rpy((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))
-    assert centre_of_mass(of(Part(shape, pose))) == pytest.approx([0.1, 0.2, 0.3], abs=2e-3)
-
-
-def test_what_a_file_says_of_the_centre_of_mass_counts() -> None:
-    assert centre_of_mass(
-        of(Part(Box((1, 1, 1))), center_of_mass=(0.1, 0.0, -0.4))
-    ) == pytest.approx([0.1, 0, -0.4])

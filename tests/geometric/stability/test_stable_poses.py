@@ -10,9 +10,10 @@ import pytest
 import trimesh
 from scipy.spatial import ConvexHull
 
+from tamp.geometric.scene.centre_of_mass import centre_of_mass
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Shape, Sphere
-from tamp.geometric.stability.hulls import body_hull, centre_of_mass, outline
+from tamp.geometric.stability.hulls import body_hull, outline
 from tamp.geometric.stability.stable_poses import Face, stable_faces_of
 from tests.geometric.streams.scenes import THINGS, problem_with
 

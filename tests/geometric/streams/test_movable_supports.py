@@ -11,7 +11,7 @@ import pytest
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.streams.collisions import near
-from tamp.geometric.streams.loads import LOADED_TILT_RAD, Level
+from tamp.geometric.streams.loads import LOADED_TILT_RAD, LevelChecker
 from tamp.geometric.streams.movable_supports import (
     inside,
     sample_inside_movable,
@@ -120,7 +120,9 @@ def test_a_load_is_level_at_home_and_not_when_the_wrist_turns(problem: Problem) 
     upright = np.eye(4)
     upright[:3, :3] = tool[:3, :3].T
     grasp = Grasp("plate", Pose.from_matrix(upright), 0.04)
-    level = Level(context, context.collisions.arrangement({}), grasp, np.array([0.0, 0.0, 1.0]))
+    level = LevelChecker(
+        context, context.collisions.arrangement({}), grasp, np.array([0.0, 0.0, 1.0])
+    )
     assert level.tilt(conf) < 1e-6
     leaning = conf.copy()
     leaning[3 + 5] += 2 * LOADED_TILT_RAD

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grounding.demonstrate.folder import Source
+from grounding.demonstrate.folder import SceneSource
 from grounding.demonstrate.relation import parse_relation
 from grounding.demonstrate.runner import Runner
 from grounding.demonstrate.studio import Studio
@@ -33,6 +33,8 @@ def studio_of(tmp_path: Path, workbench: Workbench, runner: Runner) -> Callable[
     """Makes a studio of a relation, its demonstrations in tmp_path / "shown"."""
 
     def made(text: str, scene: Path | None = None, seed: int = 0, out: str = "shown") -> Studio:
-        return Studio(parse_relation(text), Source(scene, tmp_path / out), workbench, runner, seed)
+        return Studio(
+            parse_relation(text), SceneSource(scene, tmp_path / out), workbench, runner, seed
+        )
 
     return made

@@ -10,7 +10,7 @@ import pytest
 from grounding.demonstrate.hints import contradictions, hints, next_step
 from grounding.demonstrate.relation import parse_relation
 from grounding.relations.demonstration_file import Demonstration
-from tamp.geometric.loading.furniture import FURNITURE, Options
+from tamp.geometric.loading.furniture import FURNITURE, FurnitureOptions
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, RobotStart, Room, Scene
 
@@ -33,7 +33,7 @@ def shown(
     yaws = rng.uniform(-math.pi, math.pi, 2) if yaw is None else (yaw, yaw)
     edges = rng.uniform(0.05, 0.12, (2, 3)) if size is None else np.full((2, 3), size)
     stand = Pose.from_xyz_yaw(*rng.uniform(-1, 1, 2), 0.0, table_yaw)
-    built = FURNITURE["table"].build("table", (1.2, 0.8, height), Options())
+    built = FURNITURE["table"].build("table", (1.2, 0.8, height), FurnitureOptions())
     bodies = {"table": Body("table", built.parts, stand, False, surfaces=built.surfaces)}
     x, y, z = stand.position[0], stand.position[1], height + 0.001
     for name, edge, turn in zip(("b", "a"), edges, yaws, strict=True):

@@ -7,7 +7,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grounding.demonstrate.models import MODELS, sample_body
-from grounding.demonstrate.relation import KINDS, PRESETS, Argument, Relation, parse_relation
+from grounding.demonstrate.relation import (
+    KINDS,
+    PRESETS,
+    Argument,
+    DemonstratedRelation,
+    parse_relation,
+)
 from grounding.relations.options import TAKEN
 from tamp.errors import InputError
 
@@ -43,7 +49,7 @@ def test_what_is_written_is_read_again(
     name: str, arguments: list[str], data: st.DataObject
 ) -> None:
     kinds = [data.draw(st.sampled_from(KINDS[:-1])) for _ in arguments]
-    relation = Relation(name, tuple(map(Argument, arguments, kinds)))
+    relation = DemonstratedRelation(name, tuple(map(Argument, arguments, kinds)))
     assert parse_relation(str(relation)) == relation
 
 

@@ -87,11 +87,11 @@ def test_the_state_is_json_and_whole(studio_of: Maker) -> None:
 def test_another_relation_has_a_folder_of_its_own(
     tmp_path: Path, workbench, runner, monkeypatch
 ) -> None:
-    from grounding.demonstrate.folder import Source
+    from grounding.demonstrate.folder import SceneSource
     from grounding.demonstrate.relation import parse_relation
 
     monkeypatch.chdir(tmp_path)
-    studio = Studio(parse_relation("stack(a, b)"), Source(), workbench, runner)
+    studio = Studio(parse_relation("stack(a, b)"), SceneSource(), workbench, runner)
     studio.act("label", about(studio, holds=False, anyway=True))
     said = studio.act("relation", {"text": "between(a, b, c)"})
     assert (

@@ -9,7 +9,7 @@ from sklearn.tree import DecisionTreeClassifier
 
 from grounding.oracles import paper_oracle
 from grounding.paper import networks, uniform
-from grounding.paper.encoders import Args, train_encoder
+from grounding.paper.encoders import EncoderOptions, train_encoder
 from grounding.paper.feature_table import table_of
 from grounding.paper.features import BB, BoxFeatures, poses_of
 from grounding.paper.networks import Ensemble
@@ -36,7 +36,7 @@ def tree(data):
 
 @pytest.fixture(scope="module")
 def encoder(data):
-    few = Args(iterations=2, batch=4, validation=4, points=64, validate_every=1)
+    few = EncoderOptions(iterations=2, batch=4, validation=4, points=64, validate_every=1)
     return Weights(train_encoder(data, "conv", "one", few)[0], {})
 
 

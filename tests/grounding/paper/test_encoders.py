@@ -13,7 +13,7 @@ from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.encoders import (
     ENCODERS,
     SCALINGS,
-    Args,
+    EncoderOptions,
     PosedClouds,
     chamfer,
     scaled,
@@ -24,7 +24,7 @@ from grounding.paper.features import CloudFeatures
 from grounding.paper.runtime import NumpyEncoder
 from tamp.errors import InputError
 
-FEW = Args(iterations=2, batch=4, validation=4, points=128, validate_every=1)
+FEW = EncoderOptions(iterations=2, batch=4, validation=4, points=128, validate_every=1)
 
 
 @pytest.mark.parametrize("kind", ENCODERS)

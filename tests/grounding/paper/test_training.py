@@ -4,7 +4,7 @@ import torch
 
 from grounding.paper.runtime import PaperModel
 from grounding.paper.trainer import SCHEMES, Trainer
-from grounding.paper.trainer_options import Args
+from grounding.paper.trainer_options import TrainerOptions
 from grounding.paper.training import features_of, train
 from tamp.errors import InputError
 
@@ -30,7 +30,9 @@ def table(data):
 
 
 def trained(table, sizes, seeds, scheme="both", **args):
-    trainer = Trainer(table, True, scheme, sizes, seeds, Args(critic_catches_up=2, **args))
+    trainer = Trainer(
+        table, True, scheme, sizes, seeds, TrainerOptions(critic_catches_up=2, **args)
+    )
     trainer.run()
     return list(trainer.models())
 
@@ -62,7 +64,7 @@ def test_a_run_goes_on_from_its_state(table, tmp_path):
         if line.startswith("generator 2"):
             raise Stop
 
-    args = Args(iterations=6, critic_catches_up=3, save_every=2, block=2)
+    args = TrainerOptions(iterations=6, critic_catches_up=3, save_every=2, block=2)
     whole, cut, resumed = (Trainer(table, True, "both", [240, 20], [0, 3], args) for _ in range(3))
     whole.run()
     state = tmp_path / "state.safetensors"

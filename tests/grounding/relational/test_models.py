@@ -16,7 +16,7 @@ from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
 from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.flow import COORDINATES, Flow, condition, surroundings
-from grounding.relational.flow_training import FlowNet, Scenes
+from grounding.relational.flow_training import FlowNet, SceneBatch
 from grounding.relational.measures import RegionFrame
 from grounding.relational.model import RelationalModel
 from grounding.relational.ranker import Ranker, features
@@ -127,7 +127,7 @@ def test_numpy_flows_as_torch_does(scenes: dict[str, Dataset]) -> None:
         padded = np.zeros((1, len(around) + 1, 6), np.float32)
         padded[0, : len(around)] = around
         missing = np.arange(len(around) + 1) == len(around)
-        several = Scenes(
+        several = SceneBatch(
             torch.tensor(known), torch.tensor(padded).expand(3, -1, -1), torch.tensor(missing).expand(3, -1),
             torch.tensor(half).expand(3, -1),
         )  # fmt: skip

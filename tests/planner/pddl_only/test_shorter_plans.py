@@ -79,10 +79,10 @@ def test_a_dear_plan_is_worth_more_states(tmp_path: Path, monkeypatch: pytest.Mo
     for file, text in zip((domain, problem), GENERATORS["miconic"](14, Random(1)), strict=True):
         file.write_text(text)
     task = load_symbolic(domain, problem)
-    monkeypatch.setattr(solve, "SHORTENING", 1)
-    monkeypatch.setattr(solve, "DEAR", math.inf)
+    monkeypatch.setattr(solve, "SHORTENING_WORK", 1)
+    monkeypatch.setattr(solve, "COSTLY_PLAN_FACTOR", math.inf)
     greedy = solve.solve_symbolic(task)
-    monkeypatch.setattr(solve, "DEAR", 1.5)
+    monkeypatch.setattr(solve, "COSTLY_PLAN_FACTOR", 1.5)
     cheaper = solve.solve_symbolic(task)
     assert cheaper.solved and cheaper.cost <= 0.8 * greedy.cost
     assert violation(task.task, [(o.name, o.arguments) for o in cheaper.plan]) is None
@@ -110,5 +110,5 @@ def test_a_plan_as_cheap_as_its_estimate_is_taken(
 def test_a_large_task_is_left_as_it_is(
     four_discs: solve.SymbolicProblem, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(solve, "SHORTENING", 100)
+    monkeypatch.setattr(solve, "SHORTENING_WORK", 100)
     assert len(solve.solve_symbolic(four_discs).plan) > 60

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -15,7 +17,7 @@ from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.packed import restarts, selection
 from tamp.symbolic.search.packed import search as packed_search
 from tamp.symbolic.search.packed.packing import pairs_of, signed, words_of
-from tamp.symbolic.search.search import Reason, Result, search
+from tamp.symbolic.search.search import Reason, SearchResult, search
 from tests.symbolic.search.interpreter import Interpreter
 from tests.symbolic.search.test_prices import instances, random_prices
 from tests.symbolic.search.test_random_tasks import random_task
@@ -33,7 +35,7 @@ STALL = 10**9
 """No restarts: those are the compiled loop's alone."""
 
 
-def told(result: Result) -> tuple[object, ...]:
+def told(result: SearchResult) -> tuple[object, ...]:
     plan = (
         None if result.plan is None else (tuple(map(str, result.plan.operators)), result.plan.cost)
     )
@@ -42,11 +44,11 @@ def told(result: Result) -> tuple[object, ...]:
 
 def compare(
     monkeypatch: pytest.MonkeyPatch, instantiated: InstantiatedTask, price: dict, **options: object
-) -> Result:
+) -> SearchResult:
     """Search in both loops, and once from the one into the other."""
     monkeypatch.setattr(restarts, "STALLED", STALL)
     monkeypatch.setattr(search_module, "STALLED", STALL)
-    results: list[Result] = []
+    results: list[SearchResult] = []
     for pays in (lambda entries: False, lambda entries: True, lambda entries: entries > 0):
         monkeypatch.setattr(selection, "pays", pays)
         results.append(search(instantiated, price=price, **options))  # pyright: ignore[reportArgumentType]
@@ -175,11 +177,10 @@ def test_words_are_those_of_the_state(seed: int) -> None:
 
 
 def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(
-        selection.sys.modules, "tamp.symbolic.search.packed.compiled", raising=False
-    )
+    monkeypatch.delitem(sys.modules, "tamp.symbolic.search.packed.compiled", raising=False)
     for kept, enough in ((False, selection.COMPILE_THRESHOLD), (True, selection.LOAD_THRESHOLD)):
-        monkeypatch.setattr(selection, "_METER", selection._Meter())
+        fresh = replace(selection.THRESHOLD, entries=0, enough=None)
+        monkeypatch.setattr(selection, "THRESHOLD", fresh)
         monkeypatch.setattr(selection, "compiled_before", lambda kept=kept: kept)
         assert not selection.pays(enough)
         assert selection.pays(1)
@@ -212,7 +213,7 @@ def test_a_search_that_stalls_begins_anew_and_finds_a_plan(
     domain, problem = GENERATORS["depot"](8, Random(1))
     task = parse_task(problem, parse_domain(domain))
     instantiated = instantiate(task)
-    found: dict[tuple[int, bool], Result] = {}
+    found: dict[tuple[int, bool], SearchResult] = {}
     for seed, packed in ((0, False), (0, True), (1, True), (2, True)):
         monkeypatch.setattr(selection, "pays", lambda entries, packed=packed: packed)
         found[seed, packed] = result = search(

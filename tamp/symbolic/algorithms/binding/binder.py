@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 
 from tamp.symbolic.algorithms.binding.levels import Level, Levels
-from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Term
+from tamp.symbolic.algorithms.binding.skeleton import CallNode, LiftedFact, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
@@ -31,7 +31,7 @@ class Binder:
         self._experience = experience
         self._deadline = deadline
         self.draws = 0
-        self._exhausted_met: list[tuple[Node, Instance]] = []
+        self._exhausted_met: list[tuple[CallNode, Instance]] = []
 
     def bind(
         self,
@@ -113,7 +113,7 @@ class Binder:
             levels.take(index, outputs)
             values.update(zip(nodes[index].outputs, outputs, strict=True))
 
-    def _note_end(self, nodes: Sequence[Node], failed: int | None, spent: int) -> None:
+    def _note_end(self, nodes: Sequence[CallNode], failed: int | None, spent: int) -> None:
         """Note what is learned from values that were not found: nothing is left to draw, or a node
         failed whatever the others' values are.
         """
@@ -124,7 +124,7 @@ class Binder:
         if failed is not None:
             self._evaluate_remaining_tests(nodes, failed)
 
-    def _evaluate_remaining_tests(self, nodes: Sequence[Node], failed: int) -> None:
+    def _evaluate_remaining_tests(self, nodes: Sequence[CallNode], failed: int) -> None:
         """Ask the later tests of real values too, once one failed for good: search learns from all.
 
         Not those that rest on what a test of this skeleton has yet to certify.
@@ -226,7 +226,7 @@ class Binder:
         if not instance.results:
             self._blame(node, instance, makers, conflict)
 
-    def _note(self, node: Node, instance: Instance, success: bool) -> None:
+    def _note(self, node: CallNode, instance: Instance, success: bool) -> None:
         if success or instance.last is None:
             self._experience.record(node.fact, None)
             return
@@ -248,7 +248,7 @@ class Binder:
         self._experience.record(node.fact, instance.last)
 
     def _blame(
-        self, node: Node, instance: Instance, makers: dict[int, int], conflict: set[int]
+        self, node: CallNode, instance: Instance, makers: dict[int, int], conflict: set[int]
     ) -> None:
         """Add to the conflict the levels that placed what a failed fluent stream met."""
         if not node.stream.is_fluent:
@@ -259,7 +259,7 @@ class Binder:
                 conflict |= {makers[term] for term in terms if isinstance(term, int)}
 
 
-def _present(node: Node, blockers: tuple[str, ...]) -> frozenset[Fact]:
+def _present(node: CallNode, blockers: tuple[str, ...]) -> frozenset[Fact]:
     """Return the symbolic state facts about the blockers."""
     return frozenset(fact for _, fact in node.fluents if any(word in blockers for word in fact[1:]))
 

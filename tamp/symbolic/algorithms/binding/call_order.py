@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from heapq import heapify, heappop, heappush
 
-from tamp.symbolic.algorithms.binding.skeleton import Node, Term
+from tamp.symbolic.algorithms.binding.skeleton import CallNode, Term
 
 
-def ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
+def ordered(nodes: Sequence[CallNode]) -> tuple[CallNode, ...]:
     """Order the calls to fail early: tests once they can be, generators by step, motions last."""
-    merged: dict[tuple[object, ...], Node] = {}
-    same: dict[int, Node] = {}
+    merged: dict[tuple[object, ...], CallNode] = {}
+    same: dict[int, CallNode] = {}
     for node in nodes:
         key: tuple[object, ...] = (node.stream.name, node.inputs, node.outputs, node.fluents)
         same[id(node)] = merged.setdefault(key, node)
@@ -36,7 +36,7 @@ def ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
 
     ready = [(*_rank(node), position) for position, node in enumerate(calls) if not waits[position]]
     heapify(ready)
-    order: list[Node] = []
+    order: list[CallNode] = []
     while ready:
         position = heappop(ready)[-1]
         order.append(calls[position])
@@ -50,6 +50,6 @@ def ordered(nodes: Sequence[Node]) -> tuple[Node, ...]:
     return tuple(order)
 
 
-def _rank(node: Node) -> tuple[int, int]:
+def _rank(node: CallNode) -> tuple[int, int]:
     """Rank tests, then generators, then what depends on the whole state; each by its step."""
     return (0 if node.stream.is_test else 2 if node.stream.is_fluent else 1, node.step)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from tamp.symbolic.algorithms.binding.binder import substitute, value_of
-from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
+from tamp.symbolic.algorithms.binding.skeleton import CallNode, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
 from tamp.symbolic.pddl.complement import atoms_of_conditions
 from tamp.symbolic.pddl.structs import Fact, Task
@@ -121,7 +121,7 @@ class PlanReplay:
         named.update(term for _, terms in lifted for term in terms if isinstance(term, str))
         return len(set(values.values())) < len(values) or not named.isdisjoint(values.values())
 
-    def _take(self, node: Node, values: Mapping[int, str], given: _Certified) -> str | None:
+    def _take(self, node: CallNode, values: Mapping[int, str], given: _Certified) -> str | None:
         """Add what a call certified of a state; say what is wrong if it never gave these values."""
         inputs = tuple(value_of(term, values) for term in node.inputs)
         outputs = tuple(values[variable] for variable in node.outputs)

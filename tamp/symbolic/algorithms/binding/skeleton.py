@@ -54,7 +54,7 @@ class Step:
 
 
 @dataclass(eq=False)
-class Node:
+class CallNode:
     """One stream call of a skeleton.
 
     Attributes:
@@ -78,7 +78,7 @@ class Node:
     fact: Fact
     fluents: tuple[tuple[LiftedFact, Fact], ...] = ()
     given: frozenset[Fact] = frozenset()
-    needs: list[Node] = field(default_factory=list["Node"])
+    needs: list[CallNode] = field(default_factory=list["CallNode"])
 
 
 @dataclass(eq=False)
@@ -94,7 +94,7 @@ class Skeleton:
 
     steps: tuple[Step, ...]
     actions: tuple[tuple[str, tuple[Term, ...]], ...]
-    nodes: tuple[Node, ...]
+    nodes: tuple[CallNode, ...]
     certified: tuple[LiftedFact, ...]
     rounds: int = 0
     memory: dict[int, tuple[tuple[object, ...], tuple[str, ...]]] = field(

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tamp.symbolic.algorithms.binding.call_order import ordered
-from tamp.symbolic.algorithms.binding.skeleton import LiftedFact, Node, Skeleton, Step, Term
+from tamp.symbolic.algorithms.binding.skeleton import CallNode, LiftedFact, Skeleton, Step, Term
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import ANY
-from tamp.symbolic.search.plan_trace import End
+from tamp.symbolic.search.plan_trace import FinalState
 
 
 def build_skeleton(
     steps: Sequence[Step],
-    end: End,
+    end: FinalState,
     certifier: Callable[[Fact], OptimisticInstance | None],
     certified_fact_of: Callable[[str], Fact | None],
     given: Iterable[Fact] = (),
@@ -59,9 +59,9 @@ class SkeletonBuilder:
             frozenset(given),
         )
         self._parent: list[int] = []
-        self._producer: dict[int, Node] = {}
-        self._nodes: list[Node] = []
-        self._kept: dict[int, Node] = {}
+        self._producer: dict[int, CallNode] = {}
+        self._nodes: list[CallNode] = []
+        self._kept: dict[int, CallNode] = {}
         self._state: dict[Fact, tuple[Term, ...]] = {}
         self._actions: list[tuple[str, tuple[Term, ...]]] = []
         self._certified: list[LiftedFact] = []
@@ -102,7 +102,7 @@ class SkeletonBuilder:
         for x, y in zip((*keep.inputs, *keep.outputs), (*drop.inputs, *drop.outputs), strict=True):
             self._union(x, y)
 
-    def _last(self, node: Node) -> Node:
+    def _last(self, node: CallNode) -> CallNode:
         """Return the node that a node was merged into."""
         while id(node) in self._kept:
             node = self._kept[id(node)]
@@ -142,7 +142,7 @@ class SkeletonBuilder:
         for fact in step.added:
             self._state[fact] = self._lift(fact[1:], local)
 
-    def add_goal(self, number: int, end: End) -> None:
+    def add_goal(self, number: int, end: FinalState) -> None:
         """Require what the goal rests on in the final state."""
         self._shown[number] = {fact: self._state.get(fact, fact[1:]) for fact in end.state}
         local = self._read(end.read, end.state, end.derived)
@@ -218,7 +218,7 @@ class SkeletonBuilder:
             self._require_static(promised, local, number)
             self._certify((promised,), local)
 
-    def _require_static(self, fact: Fact, local: dict[str, Term], number: int) -> Node | None:
+    def _require_static(self, fact: Fact, local: dict[str, Term], number: int) -> CallNode | None:
         """Have a fact certified; by which call, if it takes one."""
         if fact[0] == ANY:
             self._require_any(fact[1], local, number)
@@ -240,7 +240,9 @@ class SkeletonBuilder:
             outputs = tuple(
                 _variable(local.setdefault(name, self._new())) for name in guess.outputs
             )
-            node = Node(guess.stream, (guess.inputs, guess.outputs), inputs, outputs, number, fact)
+            node = CallNode(
+                guess.stream, (guess.inputs, guess.outputs), inputs, outputs, number, fact
+            )
             node.needs = [one for one in needs if one is not None]
             self._nodes.append(node)  # the same test may be asked for again; `ordered` keeps one
             for variable in outputs:

@@ -8,14 +8,11 @@ from tamp.symbolic.algorithms.experience.stream_statistics import CallKey, Exper
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts, OptimisticInstance
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import stratify
-from tamp.symbolic.search.operators import Axiom, Facts, InstantiatedTask
+from tamp.symbolic.search.operators import NO_FACTS, Axiom, Facts, InstantiatedTask
 
 OTHER_STATE = "(elsewhere)"
 """The predicate of derived facts that say that a state is another one; no PDDL name looks like
 it."""
-
-
-NONE: Facts = frozenset()
 
 
 def avoid_failing_states(
@@ -41,8 +38,10 @@ def avoid_failing_states(
         heads = [(OTHER_STATE, str(number), str(place)) for place in range(len(states))]
         others[call] = frozenset(heads)
         for head, state in zip(heads, states, strict=True):
-            axioms += [Axiom(head, NONE, frozenset((one,))) for one in sorted(state)]
-            axioms += [Axiom(head, frozenset((one,)), NONE) for one in changing if one not in state]
+            axioms += [Axiom(head, NO_FACTS, frozenset((one,))) for one in sorted(state)]
+            axioms += [
+                Axiom(head, frozenset((one,)), NO_FACTS) for one in changing if one not in state
+            ]
 
     needs: dict[Fact, Facts] = {}
     for fact in dict.fromkeys(
@@ -61,12 +60,12 @@ def avoid_failing_states(
             continue
         head = (OTHER_STATE, *fact)
         needs[fact] = frozenset((head,))
-        axioms += [Axiom(head, others[producer.call], NONE) for producer in producers]
+        axioms += [Axiom(head, others[producer.call], NO_FACTS) for producer in producers]
     if not needs:
         return instantiated
 
     def asked(static: Facts) -> Facts:
-        return frozenset(head for fact in static for head in needs.get(fact, NONE))
+        return frozenset(head for fact in static for head in needs.get(fact, NO_FACTS))
 
     operators = tuple(
         replace(

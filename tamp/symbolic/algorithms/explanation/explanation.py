@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from tamp.stream import Rejection
-from tamp.symbolic.algorithms.binding.skeleton import Node, Skeleton
+from tamp.symbolic.algorithms.binding.skeleton import CallNode, Skeleton
 from tamp.symbolic.algorithms.bound_stream import Streams
 from tamp.symbolic.algorithms.cause import Cause, CauseKind, distinct_causes
 from tamp.symbolic.algorithms.experience.failure_counts import FailureCount, blocking_objects
@@ -242,7 +242,9 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
     return list(dict.fromkeys(text for _, text in rows[:MAX_CAUSES]))
 
 
-def _row(skeleton: Skeleton, node: Node, present: frozenset[Fact], record: FailureRecord) -> str:
+def _row(
+    skeleton: Skeleton, node: CallNode, present: frozenset[Fact], record: FailureRecord
+) -> str:
     objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
     reasons = _counted(record.reasons)
     tries = record.failures + record.successes

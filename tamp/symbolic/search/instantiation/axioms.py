@@ -138,7 +138,7 @@ def derive(
     return why
 
 
-class Support(NamedTuple):
+class DerivationSupport(NamedTuple):
     """The supports of derivations: static facts, facts of the state, and the derived facts
     themselves.
     """
@@ -148,7 +148,7 @@ class Support(NamedTuple):
     heads: frozenset[Fact]
 
 
-def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> Support:
+def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> DerivationSupport:
     """Collect what the derivations of the given facts rest on; those that are not derived are
     facts of the state.
     """
@@ -165,4 +165,4 @@ def supports(why: dict[Fact, Axiom], facts: Iterable[Fact]) -> Support:
             seen.add(fact)
             static |= axiom.static
             stack.extend(axiom.positive)
-    return Support(frozenset(static), frozenset(read), frozenset(seen))
+    return DerivationSupport(frozenset(static), frozenset(read), frozenset(seen))

@@ -16,7 +16,7 @@ _EMPTY: tuple[Row, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class RuleBody:
     """A conjunction with free variables. Variables of `negative` and `equalities` occur in
     `positive` too.
 
@@ -134,7 +134,7 @@ class Relations:
 
 def join(
     relations: Relations,
-    body: Body,
+    body: RuleBody,
     variables: tuple[str, ...],
     rows: list[Row],
     order: Iterable[str],
@@ -245,7 +245,7 @@ class Rule:
     """
 
     variables: tuple[str, ...]
-    body: Body
+    body: RuleBody
     heads: tuple[Atom, ...]
     rows: dict[Row, None] = field(default_factory=lambda: {})
 
@@ -294,7 +294,7 @@ def _triggered(
         fresh = Relations()
         fresh.add(atom.predicate, delta[atom.predicate])
         variables = tuple(dict.fromkeys(term for term in atom.terms if term.startswith("?")))
-        start = join(fresh, Body((atom,)), (), [()], variables)
+        start = join(fresh, RuleBody((atom,)), (), [()], variables)
         others = rule.body.positive[:position] + rule.body.positive[position + 1 :]
-        body = Body(others, rule.body.negative, rule.body.equalities)
+        body = RuleBody(others, rule.body.negative, rule.body.equalities)
         yield from join(relations, body, variables, start, rule.variables)

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from tamp.symbolic.pddl.structs import Action, And, Atom, Fact
-from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, getter, join
+from tamp.symbolic.search.instantiation.datalog import Row, RuleBody, filler, getter, join
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Literals, Normalizer
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
-from tamp.symbolic.search.operators import NONE, ConditionalEffect, Facts
+from tamp.symbolic.search.operators import NO_FACTS, ConditionalEffect, Facts
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ _Instance = tuple[frozenset[Fact], frozenset[Fact], frozenset[Fact], Fact]
 """Positive and negative condition, static facts that it rests on, the fact added or deleted."""
 
 
-class Effects:
+class EffectTemplates:
     """The effects of one action's operators.
 
     Args:
@@ -166,7 +166,7 @@ class Effects:
         names = (*shared, *own)
         found = join(
             self._predicates.relations,
-            Body(tuple(atoms), body.negative, body.equalities),
+            RuleBody(tuple(atoms), body.negative, body.equalities),
             shared,
             start,
             names,
@@ -202,7 +202,7 @@ class Effects:
                     continue
                 changes = conditional.setdefault((positive, negative, static), ([], []))
                 changes[0 if adds else 1].append(fact)
-        unconditional = conditional.pop((NONE, NONE, NONE), None)
+        unconditional = conditional.pop((NO_FACTS, NO_FACTS, NO_FACTS), None)
         if unconditional:
             added += unconditional[0]
             deleted += unconditional[1]

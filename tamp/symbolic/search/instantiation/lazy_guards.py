@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import overload
 
 from tamp.symbolic.pddl.structs import Atom, Fact
-from tamp.symbolic.search.instantiation.datalog import Body, Row, filler, join
+from tamp.symbolic.search.instantiation.datalog import Row, RuleBody, filler, join
 from tamp.symbolic.search.instantiation.normal_form import Definition
 from tamp.symbolic.search.instantiation.predicate_kinds import PredicateKinds
 from tamp.symbolic.search.operators import Facts, Guard
@@ -153,7 +153,7 @@ class DerivedGuards:
         self, variables: tuple[str, ...], rows: list[Row], *more: Atom
     ) -> Iterator[tuple[Row, Guard]]:
         predicates = self._predicates
-        body = Body((*self._body.positive, *more), (), self._body.equalities)
+        body = RuleBody((*self._body.positive, *more), (), self._body.equalities)
         for row in join(predicates.relations, body, variables, rows, self._names):
             waiver = self._fill_absent(row)
             if waiver not in predicates.certain:

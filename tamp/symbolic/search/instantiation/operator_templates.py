@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from tamp.symbolic.pddl.structs import Action, Atom, Fact
-from tamp.symbolic.search.instantiation.datalog import Body, Row, Rule, filler
-from tamp.symbolic.search.instantiation.effects import Effects, LiftedEffect
+from tamp.symbolic.search.instantiation.datalog import Row, Rule, RuleBody, filler
+from tamp.symbolic.search.instantiation.effects import EffectTemplates, LiftedEffect
 from tamp.symbolic.search.instantiation.lazy_guards import LazyGuards
 from tamp.symbolic.search.instantiation.negation import Needs, Negation
 from tamp.symbolic.search.instantiation.normal_form import Literals
@@ -68,7 +68,7 @@ class OperatorTemplate:
         static = [atom for atom in kinds.static if not atom.predicate.startswith("type ")]
         self._static = self._fills([*static, *unnamed])
         self._arguments = filler([parameter.name for parameter in action.parameters], columns)
-        self._effects = Effects(
+        self._effects = EffectTemplates(
             variant.effects, variant.rule.variables, rows, predicates, negation, need
         )
 
@@ -178,7 +178,7 @@ def effect_rules(predicates: PredicateKinds, variant: Variant) -> list[Rule]:
     for effect in variant.effects:
         for condition in effect.conditions if effect.adds and not effect.simple else ():
             before, when = variant.rule.body, predicates.body(condition)
-            body = Body(
+            body = RuleBody(
                 tuple(dict.fromkeys((*before.positive, *when.positive))),
                 (*before.negative, *when.negative),
                 (*before.equalities, *when.equalities),

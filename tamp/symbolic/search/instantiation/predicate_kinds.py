@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from tamp.symbolic.pddl.structs import Atom, Fact, Task
-from tamp.symbolic.search.instantiation.datalog import Body, Relations, Row
+from tamp.symbolic.search.instantiation.datalog import Relations, Row, RuleBody
 from tamp.symbolic.search.instantiation.normal_form import (
     Definition,
     Literals,
@@ -163,7 +163,7 @@ class PredicateKinds:
             of(positive, 2), of(negative, 2),
         )  # fmt: skip
 
-    def body(self, literals: Literals, *, absent: bool = True, derived: bool = True) -> Body:
+    def body(self, literals: Literals, *, absent: bool = True, derived: bool = True) -> RuleBody:
         """Build what a join can check: positive atoms, types, equalities and, if wanted, the absent
         static atoms.
 
@@ -177,7 +177,7 @@ class PredicateKinds:
             for name, types in literals.variables
             if not (name in covered and "object" in types)
         )
-        return Body((*atoms, *types), kinds.absent if absent else (), literals.equalities)
+        return RuleBody((*atoms, *types), kinds.absent if absent else (), literals.equalities)
 
     def unnamed(self, literals: Literals) -> tuple[Atom, ...]:
         """Return for each variable that no positive atom names but for its type: that there is the

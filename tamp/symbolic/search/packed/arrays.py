@@ -13,7 +13,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Task(NamedTuple):
+class PackedTask(NamedTuple):
     """A task; conditions and effects over words.
 
     Attributes:

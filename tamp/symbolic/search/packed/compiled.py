@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from tamp.symbolic.search.packed import basics, estimates, loops, queues, states
-from tamp.symbolic.search.packed.arrays import Relaxed, Scratch, Space, Task
+from tamp.symbolic.search.packed.arrays import PackedTask, Relaxed, Scratch, Space
 from tamp.symbolic.search.packed.selection import digest
 from tamp.system.compilation import njit
 
@@ -81,7 +81,7 @@ class Arena:
         self._sizes[kind] += len(part)
         return self._sizes[kind] - len(part)
 
-    def scratch(self, t: Task, r: Relaxed) -> Scratch:
+    def scratch(self, t: PackedTask, r: Relaxed) -> Scratch:
         """Make room for what one expansion works with."""
         events, n, buckets = r.facts + r.effects_count + 1, t.operators, max(1, r.buckets)
         whole = {
@@ -104,7 +104,7 @@ class Arena:
             **{name: self.room(1, size, start.get(name, 0)) for name, size in real.items()},
         )
 
-    def begin(self, t: Task, r: Relaxed, rooms: Rooms) -> tuple[Space, Any, Any]:
+    def begin(self, t: PackedTask, r: Relaxed, rooms: Rooms) -> tuple[Space, Any, Any]:
         """Join all that was placed, with room for what grows behind it: the arrays."""
         space, sizes = _laid_out(t, r, rooms, self._sizes)
         ints, reals = (np.empty(size, dtype=kind) for size, kind in zip(sizes, KINDS, strict=True))
@@ -115,7 +115,7 @@ class Arena:
         ints[space.evaluated : space.evaluated + space.nodes] = 0
         return space, ints, reals
 
-    def grow(self, t: Task, r: Relaxed, was: Space, arrays: list[Any], rooms: Rooms) -> Space:
+    def grow(self, t: PackedTask, r: Relaxed, was: Space, arrays: list[Any], rooms: Rooms) -> Space:
         """Move to larger arrays, one after the other, so that but one of them is there twice.
 
         Args:
@@ -162,7 +162,7 @@ PARTS = (
 """The growing parts of each array, but for the hash table."""
 
 
-def _extent(t: Task, r: Relaxed, name: str) -> tuple[int, int, int]:
+def _extent(t: PackedTask, r: Relaxed, name: str) -> tuple[int, int, int]:
     """Return the numbers for each of what a part is about, how many lists, and which room it is."""
     if name in ("ties", "items", "keys"):
         return 1, 2 * t.heuristics, 1
@@ -173,7 +173,9 @@ def _extent(t: Task, r: Relaxed, name: str) -> tuple[int, int, int]:
     return {"states": t.words, "marks": r.mark_words, "values": t.heuristics}.get(name, 1), 1, 0
 
 
-def _laid_out(t: Task, r: Relaxed, rooms: Rooms, ends: Sequence[int]) -> tuple[Space, list[int]]:
+def _laid_out(
+    t: PackedTask, r: Relaxed, rooms: Rooms, ends: Sequence[int]
+) -> tuple[Space, list[int]]:
     """Lay the growing parts out behind the others; return their places and the arrays' sizes."""
     table = 1
     while table < 2 * rooms[0] + 2:

@@ -10,7 +10,7 @@ from typing import Any
 
 from tamp.symbolic.search.heuristics.landmarks import Landmarks
 from tamp.symbolic.search.heuristics.relaxation import Relaxation
-from tamp.symbolic.search.packed.arrays import Relaxed, Task
+from tamp.symbolic.search.packed.arrays import PackedTask, Relaxed
 from tamp.symbolic.search.successors import State, Successors, bits
 
 WORD = 64
@@ -21,8 +21,8 @@ Place = Callable[[Sequence[Any]], int]
 """Puts numbers into an array; returns where they begin."""
 
 
-class Rows:
-    """Compressed rows of several columns, as lists."""
+class CsrLists:
+    """Compressed sparse rows (CSR) of several columns, as lists."""
 
     def __init__(self, rows: Iterable[Sequence[Sequence[Any]]], columns: int) -> None:
         lengths: list[int] = []
@@ -73,8 +73,8 @@ def effects_of(kept: State, added: State, every: State) -> list[tuple[int, int, 
     return [(w, ~gone, more) for w, gone, more in pairs_of(deleted, added)]
 
 
-def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Task:
-    """Pack a task whose guards are all at hand; `kinds` are its heuristics (see `Task.kinds`).
+def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> PackedTask:
+    """Pack a task whose guards are all at hand; `kinds`: its heuristics, see `PackedTask.kinds`.
 
     Args:
         s: The task.
@@ -85,17 +85,17 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
     size = len(s.facts)
     words, every = (size + WORD - 1) // WORD or 1, (1 << size) - 1
     conditions, changes = cache(pairs_of), cache(partial(effects_of, every=every))
-    pre = Rows((conditions(b, a) for b, a in zip(s.before, s.absent, strict=True)), 3)
-    eff = Rows((changes(k, a) for k, a in zip(s.kept, s.added, strict=True)), 3)
+    pre = CsrLists((conditions(b, a) for b, a in zip(s.before, s.absent, strict=True)), 3)
+    eff = CsrLists((changes(k, a) for k, a in zip(s.kept, s.added, strict=True)), 3)
     effects = list(chain.from_iterable(s.conditional))
-    con_pre = Rows((conditions(one[0], one[1]) for one in effects), 3)
-    con_eff = Rows((changes(~one[3], one[2]) for one in effects), 3)
+    con_pre = CsrLists((conditions(one[0], one[1]) for one in effects), 3)
+    con_eff = CsrLists((changes(~one[3], one[2]) for one in effects), 3)
     whole = [every & ~k | a for k, a in zip(s.kept, s.added, strict=True)]
     for i, more in enumerate(s.conditional):
         for one in more:
             whole[i] |= one[2] | one[3]
     both = cache(touched)
-    watch = Rows(([(i,) for i in s.watched.get(fact, ())] for fact in range(size)), 1)
+    watch = CsrLists(([(i,) for i in s.watched.get(fact, ())] for fact in range(size)), 1)
 
     bodies: list[list[tuple[int, int, int]]] = []
     heads: list[int] = []
@@ -106,12 +106,12 @@ def pack_task(s: Successors, kinds: list[int], ints: Place, reals: Place) -> Tas
             heads.append(head.bit_length() - 1)
         strata.append(len(heads))
         recursive.append(int(stratum.recursive))
-    body = Rows(bodies, 3)
+    body = CsrLists(bodies, 3)
 
     guards = s.guard_sets()
-    guard_facts = Rows(([(fact,) for fact in bits(facts)] for facts in guards), 1)
-    fines = Rows((list(s.penalties(facts).items()) for facts in guards), 2)
-    return Task._make((
+    guard_facts = CsrLists(([(fact,) for fact in bits(facts)] for facts in guards), 1)
+    fines = CsrLists((list(s.penalties(facts).items()) for facts in guards), 2)
+    return PackedTask._make((
         words, len(s.operators), len(kinds), len(s.always), len(recursive), len(guards),
         ints(kinds), *map(ints, (pre.starts, *pre.columns)),
         *map(ints, (eff.starts, *eff.columns)),
@@ -181,16 +181,16 @@ def pack_relaxation(
     for number, members in enumerate(keys.members.values()):
         needs[base + number] = list(members)
 
-    held = Rows(
+    held = CsrLists(
         (
             [(g, keys.number[key], key[1]) for g, key in keys.held.get(operator, ())]
             for operator in range(len(s.operators))
         ),
         3,
     )
-    rises = Rows(keys.rises, 2)
+    rises = CsrLists(keys.rises, 2)
     before_rows, effect_rows, need_rows, groups, members, facts = (
-        Rows(([(fact,) for fact in row] for row in rows), 1)
+        CsrLists(([(fact,) for fact in row] for row in rows), 1)
         for rows in (
             before, effects, needs, relaxation.of_operator, keys.members.values(),
             [list(bits(mask)) for mask, _ in keys.members],
@@ -229,7 +229,7 @@ def pack_landmarks(
     goals = 0 if marks is None else marks.goals
     weights = [] if marks is None else [marks.weights[fact] for fact in facts]
     needs = {} if marks is None else marks.needs
-    rows = Rows(([(number[n],) for n in bits(needs.get(fact, 0))] for fact in facts), 1)
+    rows = CsrLists(([(number[n],) for n in bits(needs.get(fact, 0))] for fact in facts), 1)
     return (
         ints([fact % size for fact in facts]),
         ints([int(fact >= size) for fact in facts]),

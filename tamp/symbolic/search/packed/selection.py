@@ -6,9 +6,10 @@ Both find the same plans, so the choice is about time alone.
 from __future__ import annotations
 
 import os
-import sys
 import zlib
 from pathlib import Path
+
+from tamp.symbolic.search.compilation_threshold import CompilationThreshold
 
 LOAD_THRESHOLD = 2_000_000
 """Entries of relaxed tasks, over all states that plain Python evaluated in this process, before the
@@ -23,14 +24,9 @@ SOURCES = ("basics", "estimates", "states", "queues", "loops")
 KEPT = ("run", "eliminate")
 
 
-class _Meter:
-    """A meter of what plain Python has gone through in this process."""
-
-    entries = 0
-    enough: int | None = None
-
-
-_METER = _Meter()
+THRESHOLD = CompilationThreshold(
+    "tamp.symbolic.search.packed.compiled", LOAD_THRESHOLD, COMPILE_THRESHOLD
+)
 
 
 def digest() -> str:
@@ -49,11 +45,4 @@ def compiled_before() -> bool:
 
 def pays(entries: int) -> bool:
     """Check whether the compiled loop pays, after so much more work in plain Python."""
-    _METER.entries += entries
-    if "tamp.symbolic.search.packed.compiled" in sys.modules:
-        return True
-    if _METER.entries <= LOAD_THRESHOLD:
-        return False
-    if _METER.enough is None:
-        _METER.enough = LOAD_THRESHOLD if compiled_before() else COMPILE_THRESHOLD
-    return _METER.entries > _METER.enough
+    return THRESHOLD.pays(entries, compiled_before)

@@ -8,7 +8,7 @@ import networkx as nx
 import pytest
 
 from tamp.symbolic.algorithms.binding.call_order import ordered
-from tamp.symbolic.algorithms.binding.skeleton import Node
+from tamp.symbolic.algorithms.binding.skeleton import CallNode
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.pddl.structs import Stream
 
@@ -17,16 +17,16 @@ TEST, GENERATOR, FLUENT = 0, 1, 2
 
 def node(
     kind: int, name: str, inputs: tuple[int | str, ...], outputs: tuple[int, ...], step: int = 0
-) -> Node:
+) -> CallNode:
     """A call of a stream of one of the three kinds."""
     fluents = ("at",) if kind == FLUENT else ()
     declared = ("?o",) if kind == GENERATOR or outputs else ()
     stream = BoundStream(Stream(name, (), (), declared, (), fluents), lambda: None, (("object",),))
     assert stream.is_test == (kind == TEST) or kind == FLUENT
-    return Node(stream, (tuple(map(str, inputs)), ()), inputs, outputs, step, (name,))
+    return CallNode(stream, (tuple(map(str, inputs)), ()), inputs, outputs, step, (name,))
 
 
-def rank(one: Node) -> tuple[int, int]:
+def rank(one: CallNode) -> tuple[int, int]:
     return (TEST if one.stream.is_test else FLUENT if one.stream.is_fluent else GENERATOR, one.step)
 
 
@@ -34,7 +34,7 @@ def test_random_calls_are_in_the_first_topological_order_by_rank() -> None:
     lengths = 0
     for seed in range(200):
         random = Random(seed)
-        nodes: list[Node] = []
+        nodes: list[CallNode] = []
         for number in range(random.randint(1, 12)):
             made = [variable for one in nodes for variable in one.outputs]
             inputs = tuple(random.sample(made, min(len(made), random.randint(0, 2))))

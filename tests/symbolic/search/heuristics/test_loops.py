@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -102,13 +103,13 @@ def test_rows_are_turned_and_appended_to(loops: Kernels) -> None:
 
 
 def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(tiers.sys.modules, "tamp.symbolic.search.heuristics.loops.compiled")
-    monkeypatch.setattr(tiers, "_METER", tiers._Meter())
+    monkeypatch.delitem(sys.modules, "tamp.symbolic.search.heuristics.loops.compiled")
+    monkeypatch.setattr(tiers, "THRESHOLD", replace(tiers.THRESHOLD, entries=0, enough=None))
     monkeypatch.setattr(tiers, "compiled_before", lambda: False)
     assert tiers.choose(tiers.LOAD_THRESHOLD) is tiers.PLAIN
     assert tiers.choose(1) is tiers.PLAIN  # compiling takes longer than loading
     monkeypatch.undo()
-    monkeypatch.setattr(tiers, "_METER", tiers._Meter())
+    monkeypatch.setattr(tiers, "THRESHOLD", replace(tiers.THRESHOLD, entries=0, enough=None))
     assert tiers.choose(1) is COMPILED
 
 

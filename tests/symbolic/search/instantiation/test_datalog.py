@@ -8,7 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tamp.symbolic.pddl.structs import Atom
-from tamp.symbolic.search.instantiation.datalog import Body, Relations, Row, Rule, fixpoint, join
+from tamp.symbolic.search.instantiation.datalog import (
+    Relations,
+    Row,
+    Rule,
+    RuleBody,
+    fixpoint,
+    join,
+)
 
 OBJECTS = ("a", "b", "c")
 TERMS = ("?x", "?y", "?z", "a")
@@ -30,7 +37,7 @@ def relations_of(**facts: set[Row]) -> Relations:
     return made
 
 
-def by_hand(facts: dict[str, set[Row]], body: Body) -> set[Row]:
+def by_hand(facts: dict[str, set[Row]], body: RuleBody) -> set[Row]:
     """All assignments to the variables that make the body hold."""
     everything = Atom("all", VARIABLES)
     found: set[Row] = set()
@@ -63,7 +70,7 @@ def test_a_join_gives_all_assignments_that_satisfy_the_body(
     domain = {(name,) for name in OBJECTS}
     facts = {"p": p, "q": q, "object": domain}
     typed = tuple(Atom("object", (variable,)) for variable in VARIABLES)
-    body = Body((*positive, *typed), tuple(negative), tuple(equalities))
+    body = RuleBody((*positive, *typed), tuple(negative), tuple(equalities))
     found = join(relations_of(**facts), body, (), [()], VARIABLES)
     assert set(found) == by_hand(facts, body)
     assert len(found) == len(set(found))
@@ -79,9 +86,11 @@ def closure(edges: set[Row]) -> set[Row]:
 
 
 def path_rules() -> list[Rule]:
-    step = Rule(("?x", "?y"), Body((Atom("edge", ("?x", "?y")),)), (Atom("path", ("?x", "?y")),))
+    step = Rule(
+        ("?x", "?y"), RuleBody((Atom("edge", ("?x", "?y")),)), (Atom("path", ("?x", "?y")),)
+    )
     chain = (Atom("path", ("?x", "?y")), Atom("edge", ("?y", "?z")))
-    return [step, Rule(VARIABLES, Body(chain), (Atom("path", ("?x", "?z")),))]
+    return [step, Rule(VARIABLES, RuleBody(chain), (Atom("path", ("?x", "?z")),))]
 
 
 @settings(max_examples=80, deadline=None)

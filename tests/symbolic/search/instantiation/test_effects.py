@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.instantiation.effects import Effects, lifted_effects
+from tamp.symbolic.search.instantiation.effects import EffectTemplates, lifted_effects
 from tamp.symbolic.search.operators import ANY, ConditionalEffect, Facts
 from tests.symbolic.search.instantiation.small import fact, facts, parts
 
@@ -27,7 +27,7 @@ def effect_of(
     action = f"(:action act :parameters (?p - place) :effect {effect})"
     made = parts(action + rules, init, reached)
     made.predicates.add(sorted(facts(later)), {})
-    effects = Effects(
+    effects = EffectTemplates(
         lifted_effects(made.action("act"), made.normalizer),
         ("?p",),
         PLACES,
@@ -153,7 +153,7 @@ def test_what_all_operators_delete_is_one_set() -> None:
     """Of the effect's variables none is the action's: all bindings share the set."""
     action = "(:action act :parameters (?p - place) :effect (forall (?x - thing) (not (wet ?x))))"
     made = parts(action, reached="wet box, wet cup")
-    effects = Effects(
+    effects = EffectTemplates(
         lifted_effects(made.action("act"), made.normalizer),
         ("?p",), PLACES, made.predicates, made.negation, [].append,
     )  # fmt: skip

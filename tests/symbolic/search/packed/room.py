@@ -17,7 +17,7 @@ from tamp.symbolic.search.operators import (
     Operator,
 )
 from tamp.symbolic.search.packed import basics
-from tamp.symbolic.search.packed.arrays import Relaxed, Scratch, Space, Task
+from tamp.symbolic.search.packed.arrays import PackedTask, Relaxed, Scratch, Space
 from tamp.symbolic.search.packed.compiled import Arena
 from tamp.symbolic.search.packed.packing import pack_relaxation, pack_task, words_of
 from tamp.symbolic.search.packed.search import KINDS
@@ -77,7 +77,7 @@ class Packed(NamedTuple):
     relaxation: Relaxation
     ints: Any
     reals: Any
-    t: Task
+    t: PackedTask
     r: Relaxed
     x: Scratch
     space: Space

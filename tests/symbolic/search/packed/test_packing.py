@@ -10,8 +10,8 @@ import pytest
 from tamp.symbolic.search.operators import Guard
 from tamp.symbolic.search.packed.packing import (
     MOST_BUCKETS,
+    CsrLists,
     Keys,
-    Rows,
     effects_of,
     pairs_of,
     signed,
@@ -34,10 +34,10 @@ def names(made: Packed, words: list[tuple[int, ...]], column: int) -> str:
 
 
 def test_rows_are_columns_and_where_each_row_begins() -> None:
-    rows = Rows([[(1, "a"), (2, "b")], [], [(3, "c")]], 2)
+    rows = CsrLists([[(1, "a"), (2, "b")], [], [(3, "c")]], 2)
     assert rows.starts == [0, 2, 2, 3]
     assert rows.columns == ([1, 2, 3], ["a", "b", "c"])
-    assert Rows([], 2).starts == [0] and Rows([[]], 2).columns == ([], [])
+    assert CsrLists([], 2).starts == [0] and CsrLists([[]], 2).columns == ([], [])
 
 
 def test_words_have_a_sign() -> None:

@@ -8,9 +8,9 @@ same numbers.
 from __future__ import annotations
 
 import os
-import sys
 from pathlib import Path
 
+from tamp.symbolic.search.compilation_threshold import CompilationThreshold
 from tamp.symbolic.search.heuristics.loops import kernels, rows
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 
@@ -43,16 +43,9 @@ PLAIN = Kernels(
 """Plain Python."""
 
 
-class _Meter:
-    """A meter of what plain Python has gone through in this process. It decides about time alone,
-    never about a result.
-    """
-
-    entries = 0
-    enough: int | None = None
-
-
-_METER = _Meter()
+THRESHOLD = CompilationThreshold(
+    "tamp.symbolic.search.heuristics.loops.compiled", LOAD_THRESHOLD, COMPILE_THRESHOLD
+)
 
 
 def load() -> Kernels:
@@ -93,11 +86,4 @@ def compiled_before() -> bool:
 
 def choose(entries: int) -> Kernels:
     """Choose the kernels for a piece of work that goes through so many entries."""
-    _METER.entries += entries
-    if "tamp.symbolic.search.heuristics.loops.compiled" in sys.modules:
-        return load()
-    if _METER.entries <= LOAD_THRESHOLD:
-        return PLAIN
-    if _METER.enough is None:
-        _METER.enough = LOAD_THRESHOLD if compiled_before() else COMPILE_THRESHOLD
-    return load() if _METER.entries > _METER.enough else PLAIN
+    return load() if THRESHOLD.pays(entries, compiled_before) else PLAIN

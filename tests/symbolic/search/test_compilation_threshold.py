@@ -1,0 +1,59 @@
+"""When compiled loops pay: at once where they are loaded, else after so much work in plain Python."""
+
+from __future__ import annotations
+
+import sys
+import types
+
+import pytest
+
+from tamp.symbolic.search.compilation_threshold import CompilationThreshold
+
+MODULE = "loops_that_nobody_has"
+
+
+def kept() -> bool:
+    return True
+
+
+def not_kept() -> bool:
+    return False
+
+
+def test_loops_on_disk_pay_once_loading_does() -> None:
+    threshold = CompilationThreshold(MODULE, load=10, compile=100)
+    assert [threshold.pays(5, kept) for _ in range(3)] == [False, False, True]
+
+
+def test_loops_that_are_to_be_compiled_pay_later() -> None:
+    threshold = CompilationThreshold(MODULE, load=10, compile=100)
+    assert not threshold.pays(100, not_kept)
+    assert threshold.pays(1, not_kept)
+
+
+def test_the_disk_is_looked_at_once_and_not_before_loading_pays() -> None:
+    asked = []
+
+    def ask() -> bool:
+        asked.append(True)
+        return False
+
+    threshold = CompilationThreshold(MODULE, load=10, compile=100)
+    threshold.pays(10, ask)
+    assert not asked
+    threshold.pays(1, ask)
+    threshold.pays(1, ask)
+    assert len(asked) == 1
+
+
+def test_what_is_loaded_pays_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, MODULE, types.ModuleType(MODULE))
+    assert CompilationThreshold(MODULE, load=10, compile=100).pays(1, not_kept)
+
+
+def test_work_is_counted_while_the_loops_are_loaded() -> None:
+    threshold = CompilationThreshold(MODULE, load=10, compile=20)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, MODULE, types.ModuleType(MODULE))
+        threshold.pays(20, not_kept)
+    assert threshold.pays(1, not_kept)
