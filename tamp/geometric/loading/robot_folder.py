@@ -32,7 +32,7 @@ KINDS = ("revolute", "continuous", "prismatic")
 FULL_TURN = 2 * math.pi
 """A continuous joint's range in plans is one turn to either side, radians."""
 
-_TOP = ("format", "version", "urdf", "made_from", "base", "arm", "gripper", "allowed")
+_TOP = ("format", "version", "urdf", "made_from", "srdf", "base", "arm", "gripper", "allowed")
 _BASE = ("drive", "link", "box", "velocity", "acceleration")
 _ARM = ("foot", "mount", "home", "payload", "locked_joint", "joints")
 _JOINT = ("link", "kind", "origin", "range", "velocity", "acceleration", "effort")
