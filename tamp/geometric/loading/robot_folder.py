@@ -118,7 +118,7 @@ def _several(root: Node, folder: Path) -> Robot:
         base=Link(base["link"].text(), (_box(base["box"]),)),
         velocity=base["velocity"].numbers(3, positive=True),
         acceleration=base["acceleration"].numbers(3, positive=True),
-        drive=base["drive"].text(("fixed",), "drive of a robot with several arms"),
+        drive=base["drive"].text(DRIVES, "drive"),
         folder=folder,
     )
     entries = top["arms"].mapping()
