@@ -50,7 +50,9 @@ class Options:
     out: str = "execution.jsonl"
 
 
-def run(name: str, seed: int, grasp: str, disturb: str | None, engine: str, options: Options) -> dict[str, Any]:
+def run(
+    name: str, seed: int, grasp: str, disturb: str | None, engine: str, options: Options, robot: str | None = None
+) -> dict[str, Any]:
     """Plan once, have the plan judged, and carry it out once. Times in seconds."""
     import tamp
     from tamp.commands.solve import registry
@@ -59,7 +61,7 @@ def run(name: str, seed: int, grasp: str, disturb: str | None, engine: str, opti
     from tamp.plan.write import plan_document
     from tamp.verification.verify import verify
 
-    problem, began = tamp.load_problem(name, registry=registry()), time.process_time()
+    problem, began = tamp.load_problem(name, registry=registry(), robot=robot), time.process_time()
     solution = tamp.solve(problem, max_time=options.time, seed=seed)
     cpu = time.process_time() - began
     if not solution.solved:

@@ -21,6 +21,8 @@ from tamp.system.scratch import scratch_folder
 if TYPE_CHECKING:
     from tamp.commands.robot_folder.wanted import Wanted
 
+OURS = "the fingers of the URDF do not close: a gripper of ours takes their place"
+
 DRIVES = ("omnidirectional", "differential", "fixed")
 
 
@@ -44,6 +46,10 @@ class Make:
     """The folder to make; its name is the robot's."""
     arm: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="BASE TIP")] = None
     """The links that the arm begins and ends with; asked for where the file leaves a choice."""
+    srdf: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    """MoveIt's SRDF of the robot; else one is looked for beside the URDF. Its groups say which is
+    the arm, its end effectors which the gripper; a state proposes the home, and pairs that it
+    disables are checked where they meet."""
     base: Annotated[str, tyro.conf.arg(metavar="NAME"), OneOf("drive", DRIVES)] = "omnidirectional"
     """omnidirectional, differential (turns on the spot, drives straight), or fixed."""
     gripper: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="LEFT RIGHT")] = None
@@ -118,7 +124,7 @@ def _make(options: Make, shown: Progress) -> None:
         file = find_urdf(options.urdf)
         urdf = as_urdf(file, scratch)
         try:
-            lines = _made(_wanted(options, urdf), options, shown)
+            lines = _made(_wanted(options, urdf, file), options, shown)
         except InputError as error:
             raise error if error.file != str(urdf) else error.about(file) from None
     shown.end()
@@ -137,7 +143,8 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
     from tamp.geometric.loading.robot_folder import read_robot
 
     made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
-    write_folder(wanted.out, made.robot, made.covers, made.table, made.masses, options.urdf)
+    srdf = None if wanted.srdf is None else str(wanted.srdf.file)
+    write_folder(wanted.out, made.robot, made.covers, made.table, made.masses, options.urdf, srdf)
     robot = read_robot(wanted.out)
     shown.news("checks against pybullet")
     physics = against_physics(robot)
@@ -155,17 +162,35 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
     ]
 
 
-def _wanted(options: Make, urdf: Path) -> Wanted:
+def _wanted(options: Make, urdf: Path, file: Path | None = None) -> Wanted:
+    """Settle the choices that a robot is made by.
+
+    Args:
+        options: The user's.
+        urdf: The description.
+        file: The one that the user named, beside which an SRDF is looked for.
+    """
     from tamp.commands.robot_folder.choose_gripper import closes
     from tamp.commands.robot_folder.description import read_description
-    from tamp.commands.robot_folder.ends import choose_end
+    from tamp.commands.robot_folder.ends import choose_end, ends
+    from tamp.commands.robot_folder.srdf_arm import choose_arm, choose_fingers
+    from tamp.commands.robot_folder.srdf_search import srdf_for
     from tamp.commands.robot_folder.wanted import Wanted
 
     (base, tip), found = options.arm or ("", ""), None
     description = read_description(urdf)
+    srdf, remarks = srdf_for(description, options.srdf, file or urdf)
     if options.arm is None:
-        end = choose_end(description)
+        end, said = None, ""
+        if srdf is not None and len(ends(description)) != 1:
+            end, said = choose_arm(srdf, description)
+        end = choose_end(description) if end is None else end
         base, tip, found = end.base, end.tip, end.fingers
+        remarks = (*remarks, said) if said else remarks
+    asked = options.gripper is None and options.suction is None and options.axis is None
+    if srdf is not None and found is None and asked and tip in description.links:
+        found, said = choose_fingers(srdf, description, tip)
+        remarks = (*remarks, said) if said else remarks
     wanted = Wanted(
         urdf=urdf,
         base=base,
@@ -182,9 +207,12 @@ def _wanted(options: Make, urdf: Path) -> Wanted:
         height=options.height,
         home=options.home,
         fixed=_fixed(options.stands),
+        srdf=srdf,
+        remarks=remarks,
     )
-    if options.gripper is None and found is not None and not closes(description, wanted):
-        return replace(wanted, fingers=None)  # ours takes their place
+    chosen = options.gripper is None and wanted.fingers is not None
+    if chosen and not closes(description, wanted):
+        return replace(wanted, fingers=None, remarks=(*remarks, OURS))
     return wanted
 
 

@@ -14,6 +14,7 @@ from tamp.execution.disturbance import Disturbance, ScheduledDisturbance, schedu
 from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
+from tamp.execution.hands import in_hand, in_hands, in_other_hands
 from tamp.execution.monitoring import ContactMonitor
 from tamp.execution.motor_commands import CLOSING, TrajectoryPlayer
 from tamp.execution.observation import ObservedScene, Observer
@@ -128,8 +129,8 @@ class _Run:
         """Return the execution's outcome."""
         self._world.wait(WAIT_AFTER_ACTION_S)
         truth = self._look()
-        held, classifiers = self._held(), self._chosen.classifiers
-        goal = judged(self._goal, self._expected, truth, held, classifiers, self._own)
+        hands, classifiers = in_hands(self._world), self._chosen.classifiers
+        goal = judged(self._goal, self._expected, truth, hands, classifiers, self._own)
         reached = all(part.holds for part in goal)
 
         return Execution(
@@ -151,7 +152,11 @@ class _Run:
 
     def _carry_out(self, action: TimedAction) -> ActionOutcome:
         world, began = self._world, self._world.time
-        active, load = self._active(action), self._expected.load
+        active, load, carried = (
+            self._active(action),
+            self._expected.load,
+            in_hands(self._world).values(),
+        )
         before = {name: world.pose(name) for name in world.scene.movable}
         world.wake(active)
         watch = ContactMonitor(world, active)
@@ -163,8 +168,8 @@ class _Run:
             body = self._scene_name(segment.attach.body) if segment.attach else None
             happens = due is not None and due.segment == number
             event, at = (partial(self._disturb, due), due.share) if happens and due else (None, 0.0)
-            carried = segment.holding if self._chosen.replanner else None
-            guard = self._scene_name(carried) if carried else None
+            guarded = segment.holding if self._chosen.replanner else None
+            guard = self._scene_name(guarded) if guarded else None
             if not self._player.play(segment, body, watch, event, at, guard):
                 break
 
@@ -182,7 +187,7 @@ class _Run:
             base=watch.base,
             arm=watch.arm,
             touches=watch.unwanted(),
-            displaced=tuple(self._displaced(before, {active, *load})),
+            displaced=tuple(self._displaced(before, {active, *load, *carried})),
             deviations=tuple(self._deviations(truth, active)),
             event=self._event if due else None,
         )
@@ -215,18 +220,8 @@ class _Run:
     # What is seen
 
     def _held(self) -> str | None:
-        """Return the body in the hand: bound to it, or between the fingers and off the ground that
-        it stood on.
-        """
-        world = self._world
-        if world.bound is not None or not world.squeezing:
-            return world.bound
-        touching: dict[str, set[str]] = {}
-        for first, second in world.touches():
-            if first in world.finger_links:
-                touching.setdefault(second, set()).add(first)
-        between = (name for name in world.scene.movable if len(touching.get(name, ())) == 2)
-        return next(between, None)
+        """Return the body in the hand that is in use."""
+        return in_hand(self._world, self._world.used)
 
     def _look(self) -> ObservedScene:
         world = self._world
@@ -246,7 +241,8 @@ class _Run:
         facts = frozenset(fact for fact in expected.facts if fact[1] in words)
         facts |= self._own.missed(truth, self._held(), expected)
         held = expected.held_by(world.arms[world.used].arm)
-        return list(deviations(poses_expected, held, facts, seen, active, new))
+        found = list(deviations(poses_expected, held, facts, seen, active, new))
+        return [*found, *in_other_hands(world, expected, poses)]
 
     def _come_to_rest(self) -> None:
         """Wait for bodies that fall or roll, not for ever."""

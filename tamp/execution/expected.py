@@ -87,6 +87,15 @@ class Expected:
         return None
 
     @property
+    def in_hands(self) -> dict[str, tuple[str, Array]]:
+        """Return the bodies in the hands of several arms, and their T_tool_body, by the arms'
+        names; none where the domain has no arms.
+        """
+        arms = {terms[0] for terms in self.state.all("holding") if len(terms) == 3}
+        held = {arm: self.held_by(arm) for arm in sorted(arms)}
+        return {arm: one for arm, one in held.items() if one is not None}
+
+    @property
     def load(self) -> frozenset[str]:
         """Return the bodies that ride on another one, and go where that is carried."""
         riding = (terms[0] for terms in self.state.all("riding") if len(terms) == 4)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tamp.errors import InputError
 from tamp.execution.deviation import FAR, TURNED
@@ -32,12 +32,12 @@ def judged(
     goal: Formula,
     expected: Expected,
     truth: ObservedScene,
-    held: str | None,
+    hands: Mapping[str, str | None],
     classifiers: Mapping[str, tuple[str, Classifier]],
     own: Own = NONE,
 ) -> tuple[GoalFact, ...]:
     """Evaluate each part of the goal, by the geometry; and what the classifiers of its relations
-    say.
+    say. `hands`: the body in each hand, by the names of the arms.
 
     Classifiers of the user's own relations decide about these. Others than them, `on` and `inside`
     hold as the plan has them for bodies that are where the plan put them.
@@ -48,18 +48,13 @@ def judged(
         for row in rows
         if name not in FLUENTS
     }
-    facts |= {("hand-empty",)} if held is None else set()
-    facts |= {
-        fact
-        for fact in expected.state.facts.get("holding", set())
-        if held and fact[0] == held.lower()
-    }
-
+    facts |= set(_of_hands(expected, hands))
+    held = [body for body in hands.values() if body is not None]
     there = dict(_in_place(expected, truth, held))
-    placed = [name.lower() for name in truth.scene.movable if name != held] if own.asked else []
+    placed = [name.lower() for name in truth.scene.movable if name not in held] if own.asked else []
     at = {body: f"{body} seen" for body in placed} | there
     facts |= {("at-pose", body, pose) for body, pose in at.items()}
-    for seen in own.observe(truth, held, expected, at).values():
+    for seen in own.observe(truth, next(iter(held), None), expected, at).values():
         facts = (facts - seen.fails) | seen.holds
 
     state = State.of(facts | truth.facts)
@@ -76,6 +71,21 @@ def judged(
         why = None if holds else _reason(part, truth, held) or _moved(part, there, expected, own)
         found.append(GoalFact(to_text(part), holds, why, name, probability))
     return tuple(found)
+
+
+def _of_hands(expected: Expected, hands: Mapping[str, str | None]) -> Iterator[tuple[str, ...]]:
+    """Yield the facts of which hand is empty and which holds what, with the arm first in a domain
+    that has arms.
+    """
+    held = {arm: body.lower() for arm, body in hands.items() if body is not None}
+    if not held:
+        yield ("hand-empty",)
+    for arm in hands.keys() - held.keys():
+        yield ("hand-empty", arm)
+    for fact in expected.state.facts.get("holding", set()):
+        first, *rest = fact
+        if first in held.values() or (first in held and held[first] in rest):
+            yield ("holding", *fact)
 
 
 def classifiers_of(registry: Registry) -> dict[str, tuple[str, Classifier]]:
@@ -105,7 +115,7 @@ def _made(make: Callable[[], object]) -> Classifier | None:
 def _classified(
     part: Formula,
     truth: ObservedScene,
-    held: str | None,
+    held: Sequence[str],
     classifiers: Mapping[str, tuple[str, Classifier]],
 ) -> tuple[str | None, float | None]:
     if isinstance(part, Not):
@@ -115,7 +125,7 @@ def _classified(
     name, classifier = classifiers[part.predicate]
     scene = truth.scene
     names = {one.lower(): one for one in (*scene.bodies, *scene.surfaces, *scene.cavities)}
-    if not all(term in names and names[term] != held for term in part.terms):
+    if not all(term in names and names[term] not in held for term in part.terms):
         return None, None
     try:
         number = probability(classifier, scene, [names[term] for term in part.terms])
@@ -133,12 +143,12 @@ def _with_poses(semantics: Semantics, at: Mapping[str, str]) -> Semantics:
 
 
 def _in_place(
-    expected: Expected, truth: ObservedScene, held: str | None
+    expected: Expected, truth: ObservedScene, held: Sequence[str]
 ) -> Iterator[tuple[str, str]]:
     """Yield the bodies and poses, in PDDL's names, of those that are seen where the plan has
     them.
     """
-    bodies = {name.lower(): name for name in truth.scene.movable if name != held}
+    bodies = {name.lower(): name for name in truth.scene.movable if name not in held}
     for terms in expected.state.all("at-pose"):
         value = expected.plan.values.get(terms[-1])
         if len(terms) != 2 or terms[0] not in bodies or value is None or value.type != "pose":
@@ -161,11 +171,11 @@ def _moved(part: Formula, there: Mapping[str, str], expected: Expected, own: Own
     return f"{gone[0]} is not where the plan put it" if gone else None
 
 
-def _reason(part: Formula, truth: ObservedScene, held: str | None) -> str | None:
+def _reason(part: Formula, truth: ObservedScene, held: Sequence[str]) -> str | None:
     if not isinstance(part, Atom) or not part.terms:
         return None
     body = part.terms[0]
-    if held is not None and body == held.lower():
+    if body in {name.lower() for name in held}:
         return "it is in the hand"
     if body not in {name.lower() for name in truth.scene.bodies}:
         return "it is gone"

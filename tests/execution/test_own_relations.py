@@ -112,7 +112,7 @@ def test_the_goal_is_what_is_seen(folder: Path, goal: str, holds: tuple[bool, bo
     T[2, 3] -= 0.075 - 0.03
     T[1, 3] += 0.1
     for poses, outcome in (({}, holds[0]), ({"Tea": T}, holds[1])):
-        (part,) = judged(wanted, expected, seen(stored, poses), None, {}, own)
+        (part,) = judged(wanted, expected, seen(stored, poses), {}, {}, own)
         assert part.holds is outcome, part
     assert own.missed(seen(stored, {"Tea": T}), None, expected) == {("upright", "tea", "table")}
 
@@ -128,7 +128,7 @@ def test_what_moved_and_still_holds_holds(folder: Path) -> None:
     T[1, 3] -= 0.3
     for classifiers, holds in (({}, False), ({"upright": ("mine", upright)}, True)):
         own = own_relations(stored, domain, goal, classifiers)  # type: ignore[arg-type]
-        (part,) = judged(goal, expected, seen(stored, {"Tea": T}), None, {}, own)
+        (part,) = judged(goal, expected, seen(stored, {"Tea": T}), {}, {}, own)
         assert part.holds is holds
         assert holds or part.why == "tea is not where the plan put it"
 

@@ -41,6 +41,7 @@ class Description:
         efforts: By joint, newton metres or newtons; 0 where the file has none.
         mimics: By joint that follows another: its name, factor and offset.
         root: The link that is no joint's child.
+        name: The robot's; empty where the file has none.
     """
 
     file: Path
@@ -50,6 +51,7 @@ class Description:
     efforts: Mapping[str, float]
     mimics: Mapping[str, tuple[str, float, float]]
     root: str
+    name: str = ""
 
     def joint_to(self, link: str) -> Joint | None:
         """Return the joint whose child a link is."""
@@ -133,6 +135,7 @@ def read_description(file: Path) -> Description:
         efforts=efforts,
         mimics=mimics,
         root=_root(file, links, joints),
+        name=tree.get("name", ""),
     )
 
 

@@ -78,7 +78,7 @@ def _drawn(robot: Robot, kinematics: Kinematics, length: float) -> list[tuple[fl
     q = np.random.default_rng(0).uniform(chain.lower, chain.upper, (SAMPLES, len(chain.lower)))
     R, p = tools(chain, q)
     ahead = (p[:, 0] - shoulder[0]) / length
-    kept = (ahead > AHEAD[0]) & (np.abs(p[:, 1]) < 0.3 * length) & (p[:, 2] > _lowest(robot))
+    kept = (ahead > AHEAD[0]) & (np.abs(p[:, 1]) < 0.3 * length) & (p[:, 2] > lowest(robot))
     return [
         (_sprawl(robot, kinematics, q[index]) + 1.0 + float(R[index, 2, 2]), q[index])
         for index in np.flatnonzero(kept)[: 10 * LOOKED_AT]
@@ -90,7 +90,7 @@ def _shoulder(robot: Robot) -> Array:
     return np.array((robot.T_base_arm @ robot.joints[0].origin @ robot.joints[1].origin).position)
 
 
-def _lowest(robot: Robot) -> float:
+def lowest(robot: Robot) -> float:
     """Return how low the tool may be with something that hangs from it, metres."""
     return ROOM + max(0.0, _top(robot))
 
@@ -100,7 +100,7 @@ def _poses(robot: Robot, length: float, ways: list[Array]) -> list[Array]:
     shoulder = _shoulder(robot)
     poses: list[Array] = []
     for ahead, above, R in itertools.product(AHEAD * length, ABOVE * length, ways):
-        if shoulder[2] + above < _lowest(robot):
+        if shoulder[2] + above < lowest(robot):
             continue
         T = np.eye(4)
         T[:3, :3] = R

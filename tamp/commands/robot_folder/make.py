@@ -22,8 +22,14 @@ from tamp.commands.robot_folder.hand import tip_is_hand
 from tamp.commands.robot_folder.home import home
 from tamp.commands.robot_folder.kept_steps import kept, kept_hulls
 from tamp.commands.robot_folder.reach_table import table
-from tamp.commands.robot_folder.self_collision import allowed_pairs, home_collision, misjudged
+from tamp.commands.robot_folder.self_collision import (
+    allowed_pairs,
+    home_collision,
+    meetings,
+    misjudged,
+)
 from tamp.commands.robot_folder.spheres import cover
+from tamp.commands.robot_folder.srdf_proposals import disabled_that_meet, home_of
 from tamp.commands.robot_folder.wanted import Wanted
 from tamp.commands.robot_folder.weight import carrying
 from tamp.errors import InputError
@@ -84,10 +90,14 @@ def make(wanted: Wanted, told: Told) -> Made:
     reach = kept("reach", _unnamed(robot), partial(table, robot, partial(told, REACHING)))
     check_reach(reach["counts"], reach["heights"], robot)
 
-    allowed, warnings = _allowed(robot, told)
+    met = _met(robot, told)
+    allowed, warnings = allowed_pairs(robot, met)
     robot = replace(robot, allowed=allowed)
+    if wanted.srdf is not None:
+        warnings += tuple(disabled_that_meet(wanted.srdf, description, arm, robot, met))
     told("a home configuration", 0.0)
-    robot = replace(robot, home=_home(robot, wanted))
+    q, said = _home(robot, wanted)
+    robot = replace(robot, home=q)
     covers = _covers(robot, told)
 
     groups = {group.name: group.mass for group in arm.groups}
@@ -96,7 +106,8 @@ def make(wanted: Wanted, told: Told) -> Made:
     masses = groups | shared
     effort, weak = carrying(robot, masses)
     robot = replace(robot, effort=effort)
-    return Made(robot, covers, reach, masses, off, (*remarks, *warnings, *weak))
+    remarks = (*wanted.remarks, *remarks, *warnings, *said, *weak)
+    return Made(robot, covers, reach, masses, off, remarks)
 
 
 def _placed(robot: Robot, wanted: Wanted, arm: Arm) -> tuple[Robot, list[str]]:
@@ -203,17 +214,17 @@ def _unnamed(robot: Robot) -> Robot:
     return replace(robot, name="")
 
 
-def _allowed(robot: Robot, told: Told) -> tuple[frozenset[tuple[str, str]], tuple[str, ...]]:
-    """Find the pairs that are never checked, and sentences about them."""
+def _met(robot: Robot, told: Told) -> dict[tuple[str, str], int]:
+    """Count in how many states each pair of links meets."""
 
     def compute() -> dict[str, np.ndarray]:
-        pairs, remarks = allowed_pairs(robot, partial(told, "pairs of links that can meet"))
-        names = np.array(sorted(pairs), dtype=np.str_).reshape(-1, 2)
-        return {"pairs": names, "remarks": np.array(remarks, dtype=np.str_)}
+        met = meetings(robot, partial(told, "pairs of links that can meet"))
+        names = np.array([*met], dtype=np.str_).reshape(-1, 2)
+        return {"pairs": names, "counts": np.array([*met.values()], dtype=np.int64)}
 
     found = kept("pairs", _unnamed(robot), compute)
-    pairs = frozenset((str(first), str(second)) for first, second in found["pairs"])
-    return pairs, tuple(map(str, found["remarks"]))
+    pairs = ((str(first), str(second)) for first, second in found["pairs"])
+    return dict(zip(pairs, found["counts"].tolist(), strict=True))
 
 
 def _refined(robot: Robot, meshes: Mapping[str, Sequence[CollisionElement]], told: Told) -> Robot:
@@ -239,12 +250,16 @@ def _refined(robot: Robot, meshes: Mapping[str, Sequence[CollisionElement]], tol
     return replace(robot, links=tuple(links))
 
 
-def _home(robot: Robot, wanted: Wanted) -> tuple[float, ...]:
+def _home(robot: Robot, wanted: Wanted) -> tuple[tuple[float, ...], list[str]]:
+    """Take the home that is wanted, or the SRDF's, or look for one; with sentences about it."""
     if wanted.home is None:
         length = sum(math.hypot(*joint.origin.position) for joint in robot.joints[1:])
         length += math.hypot(*robot.T_flange_hand.position)
-        found = kept("home", _unnamed(robot), lambda: {"q": np.array(home(robot, length))})
-        return tuple(found["q"].tolist())
+        q, said = (None, []) if wanted.srdf is None else home_of(wanted.srdf, robot, length)
+        if q is None:
+            found = kept("home", _unnamed(robot), lambda: {"q": np.array(home(robot, length))})
+            q = tuple(found["q"].tolist())
+        return q, said
     if len(wanted.home) != len(robot.joints):
         raise InputError(f"--home: {len(robot.joints)} numbers are expected, one a joint, not "
                          f"{len(wanted.home)}")  # fmt: skip
@@ -256,7 +271,7 @@ def _home(robot: Robot, wanted: Wanted) -> tuple[float, ...]:
     hit = home_collision(robot, wanted.home)
     if hit is not None:
         raise InputError(f"--home: {hit[0]} and {hit[1]} meet there")
-    return wanted.home
+    return wanted.home, []
 
 
 def _covers(robot: Robot, told: Told) -> dict[tuple[str, int], tuple[Array, float]]:

@@ -75,7 +75,7 @@ class _Writer:
 
     def __init__(self, mujoco: Any, model: Any, folder: Path) -> None:
         self._mujoco, self._model = mujoco, model
-        self._robot = ElementTree.Element("robot", name="mjcf")
+        self._robot = ElementTree.Element("robot", name="")
         self._names: set[str] = set()
         self._links: dict[int, str] = {}
         self._anchors: dict[int, Array] = {}

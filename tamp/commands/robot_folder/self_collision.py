@@ -115,25 +115,28 @@ def checkable(robot: Robot, without: frozenset[Pair]) -> list[Pair]:
     return [pair for pair in pairs if pair not in without]
 
 
-def allowed_pairs(
-    robot: Robot, told: Callable[[float], None]
-) -> tuple[frozenset[Pair], tuple[str, ...]]:
-    """Find the pairs that plans need not check: adjacent ones, and those that met never, or mostly,
-    in STATES random states, half of them with joints at their limits.
+def meetings(robot: Robot, told: Callable[[float], None]) -> dict[Pair, int]:
+    """Count in how many of STATES random states, half of them with joints at their limits, each
+    pair is nearer than plans may be; adjacent ones are left out.
+    """
+    pairs = checkable(robot, adjacent(robot))
+    return count_meetings(robot, hull_bodies(robot), pairs, STATES, 0, told, NEAR)
+
+
+def allowed_pairs(robot: Robot, met: Mapping[Pair, int]) -> tuple[frozenset[Pair], tuple[str, ...]]:
+    """Find the pairs that plans need not check: adjacent ones, and those that met never, or mostly.
 
     Returns:
         The pairs, and a sentence about each that met mostly but not always.
     """
-    near = adjacent(robot)
-    pairs = checkable(robot, near)
-    met = count_meetings(robot, hull_bodies(robot), pairs, STATES, 0, told, NEAR)
     mostly = {pair: count / STATES for pair, count in met.items() if count > MOSTLY * STATES}
     remarks = [
         f"{first} and {second} meet in {share:.0%} of states: taken for neighbours, not checked"
         for (first, second), share in sorted(mostly.items())
         if share < 1.0
     ]
-    return near | {pair for pair, count in met.items() if not count} | {*mostly}, tuple(remarks)
+    never = {pair for pair, count in met.items() if not count}
+    return adjacent(robot) | never | {*mostly}, tuple(remarks)
 
 
 def misjudged(

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tamp.commands.robot_folder.srdf import Srdf
+
 
 @dataclass(frozen=True)
 class Wanted:
@@ -28,6 +30,8 @@ class Wanted:
         height: Metres at which an arm that does not drive is bolted to something.
         home: Its carrying configuration.
         fixed: Where joints stand that are no part of the arm.
+        srdf: What MoveIt is told about the robot: its states and pairs are proposals.
+        remarks: Sentences about how these choices were made.
     """
 
     urdf: Path
@@ -45,3 +49,5 @@ class Wanted:
     height: float = 0.0
     home: tuple[float, ...] | None = None
     fixed: Mapping[str, float] = field(default_factory=dict[str, float])
+    srdf: Srdf | None = None
+    remarks: tuple[str, ...] = ()

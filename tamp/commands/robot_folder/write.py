@@ -32,6 +32,7 @@ def write_folder(
     table: Mapping[str, Array],
     masses: Mapping[str, float],
     made_from: str,
+    srdf: str | None = None,
 ) -> None:
     """Write a robot's folder: whole, or not at all; one that was there is replaced.
 
@@ -43,7 +44,7 @@ def write_folder(
         fresh = Path(tempfile.mkdtemp(prefix=".tamp-robot-", dir=out.parent))
         try:
             fresh.chmod(0o755)
-            _fill(fresh, robot, covers, table, masses, made_from)
+            _fill(fresh, robot, covers, table, masses, made_from, srdf)
             old = out.with_name(f"{fresh.name}-old")
             if out.exists():
                 out.rename(old)
@@ -57,7 +58,7 @@ def write_folder(
 
 def _fill(
     folder: Path, robot: Robot, covers: Covers, table: Mapping[str, Array],
-    masses: Mapping[str, float], made_from: str,
+    masses: Mapping[str, float], made_from: str, srdf: str | None,
 ) -> None:  # fmt: skip
     arrays: dict[str, np.ndarray] = {}
     (folder / "meshes").mkdir()
@@ -79,7 +80,7 @@ def _fill(
     (folder / "geometry.npz").write_bytes(_packed(arrays))
     (folder / "reachability.npz").write_bytes(_packed(table))
     (folder / "robot.urdf").write_text(urdf_text(robot, masses), encoding="utf-8")
-    (folder / "robot.yaml").write_text(yaml_text(robot, made_from), encoding="utf-8")
+    (folder / "robot.yaml").write_text(yaml_text(robot, made_from, srdf), encoding="utf-8")
 
 
 def mesh_name(link: str, number: int) -> str:
@@ -100,7 +101,7 @@ def _obj(hull: Hull) -> str:
     return "\n".join(lines) + "\n"
 
 
-def yaml_text(robot: Robot, made_from: str) -> str:
+def yaml_text(robot: Robot, made_from: str, srdf: str | None = None) -> str:
     """Write robot.yaml."""
     part = robot.link(robot.base).parts[0]
     size = part.shape.size if isinstance(part.shape, Box) else (0.1, 0.1, 0.1)
@@ -110,6 +111,7 @@ def yaml_text(robot: Robot, made_from: str) -> str:
         "format: tamp-robot",
         "version: 1",
         f"made_from: {_quoted(made_from)}",
+        *([] if srdf is None else [f"srdf: {_quoted(srdf)}"]),
         "urdf: robot.urdf",
         "base:",
         f"  drive: {robot.drive}",

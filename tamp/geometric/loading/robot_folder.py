@@ -32,7 +32,7 @@ KINDS = ("revolute", "continuous", "prismatic")
 FULL_TURN = 2 * math.pi
 """A continuous joint's range in plans is one turn to either side, radians."""
 
-_TOP = ("format", "version", "urdf", "made_from", "base", "arm", "gripper", "allowed")
+_TOP = ("format", "version", "urdf", "made_from", "srdf", "base", "arm", "gripper", "allowed")
 _BASE = ("drive", "link", "box", "velocity", "acceleration")
 _ARM = ("foot", "mount", "home", "payload", "locked_joint", "joints")
 _JOINT = ("link", "kind", "origin", "range", "velocity", "acceleration", "effort")
@@ -118,7 +118,7 @@ def _several(root: YamlNode, folder: Path) -> Robot:
         base=Link(base["link"].text(), (_box(base["box"]),)),
         velocity=base["velocity"].numbers(3, positive=True),
         acceleration=base["acceleration"].numbers(3, positive=True),
-        drive=base["drive"].text(("fixed",), "drive of a robot with several arms"),
+        drive=base["drive"].text(DRIVES, "drive"),
         folder=folder,
     )
     entries = top["arms"].mapping()

@@ -7,6 +7,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 from xml.etree import ElementTree
+from xml.parsers import expat
 
 from tamp.errors import InputError
 from tamp.geometric.loading.raw_file import read_raw
@@ -23,6 +24,7 @@ _TEXT_ENCODINGS = re.compile(
 )
 _PREFIX = re.compile(r"[<\s/]([A-Za-z_][\w.-]*):[A-Za-z_]")
 _ROOT = re.compile(r"<[A-Za-z_][\w.:-]*")
+_BLANK = " \t\r\n\0\ufeff"
 _BOMS = ((b"\xef\xbb\xbf", "utf-8"), (b"\xff\xfe", "utf-16-le"), (b"\xfe\xff", "utf-16-be"))
 
 
@@ -40,7 +42,7 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
     Raises:
         InputError: It cannot be read, is too large, or is not XML.
     """
-    text = _text(read_raw(path, most))
+    text = _bare(_decoded(read_raw(path, most)))
     try:
         try:
             root = ElementTree.fromstring(text)
@@ -53,6 +55,27 @@ def read_xml(path: Path, most: int = MOST_BYTES) -> ElementTree.Element:
         raise InputError(f"cannot read '{path.name}': {error}") from None
     except RecursionError:
         raise InputError(f"cannot read '{path.name}': nested too deeply") from None
+
+
+def read_numbered_xml(
+    path: Path, most: int = MOST_BYTES
+) -> tuple[ElementTree.Element, dict[ElementTree.Element, int]]:
+    """Read the root element of an XML file, and the line of each element in it, 1-based.
+
+    Raises:
+        InputError: As `read_xml`, with the file.
+    """
+    try:
+        root = read_xml(path, most)
+    except InputError as error:
+        raise error.at(path) from None
+    text = _decoded(read_raw(path, most))
+    before = text[: len(text) - len(text.lstrip(_BLANK))].count("\n")
+    lines: list[int] = []
+    parser = expat.ParserCreate()
+    parser.StartElementHandler = lambda *_: lines.append(before + parser.CurrentLineNumber)
+    parser.Parse(_bare(text), True)
+    return root, dict(zip(root.iter(), lines, strict=True))
 
 
 def _plain(root: ElementTree.Element) -> ElementTree.Element:
@@ -73,10 +96,8 @@ def _bound(text: str) -> str:
     return _ROOT.sub(lambda root: root[0] + names, text, count=1)
 
 
-def _text(content: bytes) -> str:
-    """Return the text of the file without byte order mark, declaration, and blanks or zero bytes at
-    its ends.
-    """
+def _decoded(content: bytes) -> str:
+    """Return the text of a file without byte order mark."""
     encoding = "utf-8"
     for mark, name in _BOMS:
         if content.startswith(mark):
@@ -87,9 +108,12 @@ def _text(content: bytes) -> str:
         if declared and _TEXT_ENCODINGS.match(declared[1].decode()):
             encoding = declared[1].decode()
     try:
-        text = content.decode(encoding)
+        return content.decode(encoding)
     except (UnicodeError, LookupError):
-        text = content.decode("latin-1")
+        return content.decode("latin-1")
+
+
+def _bare(text: str) -> str:
+    """Return a text without its declaration, and without blanks or zero bytes at its ends."""
     # pybullet's own files begin with a blank line and end with a zero byte; neither is XML.
-    text = text.strip(" \t\r\n\0\ufeff")
-    return re.sub(r"^<\?xml[^>]*\?>", "", text, count=1)
+    return re.sub(r"^<\?xml[^>]*\?>", "", text.strip(_BLANK), count=1)

@@ -133,6 +133,7 @@ def as_arm(body: Mobile, own: Robot, name: str, mount: Pose) -> Robot:
         arm=name,
         prefix=prefix,
         described=((prefix, own.folder),),
+        tabled=(own.folder, own.T_base_arm),
     )
 
 

@@ -23,6 +23,9 @@ BROAD_SHARE = 0.1
 drawn.
 """
 
+UPRIGHT = math.cos(math.radians(1.0))
+"""Cosine of the angle between two feet's axes up to which they lean alike."""
+
 FRONT_SPREAD_RAD = math.radians(25)
 """Standard deviation of the tool's bearing as seen from the arm's foot: the base mostly faces its
 work.
@@ -30,8 +33,9 @@ work.
 
 
 def asset(robot: Robot) -> Path:
-    """Return the file of the robot's table."""
-    return robot.folder / "reachability.npz"
+    """Return the file of the robot's table; an arm of a body has that of the robot it is of."""
+    folder = robot.folder if robot.tabled is None else robot.tabled[0]
+    return folder / "reachability.npz"
 
 
 def _read(file: Path) -> dict[str, Array]:
@@ -80,6 +84,9 @@ class Reachability:
     many comfortable IK solutions there are. After Vahrenkamp et al., "Robot placement based on
     reachability inversion" (ICRA 2013).
 
+    An arm of a body takes the table of the robot that it is of, moved up and turned with its foot.
+    Where its foot leans otherwise than that one's the table says nothing, and all draws are broad.
+
     Raises:
         InputError: The robot's table is missing or damaged.
     """
@@ -96,6 +103,11 @@ class Reachability:
         weights = np.where(counts > 0, counts**0.25, 0.0) * self._distances[:, None] ** 3
         self._cumulative = np.cumsum(weights.reshape(*counts.shape[:2], -1), axis=2)
         self._foot = np.array(robot.T_base_arm.position[:2])
+        own = robot.T_base_arm if robot.tabled is None else robot.tabled[1]
+        turned = robot.T_base_arm.rotation @ own.rotation.T
+        self._upright = bool(turned[2, 2] > UPRIGHT)
+        self._rise = robot.T_base_arm.position[2] - own.position[2]
+        self._turn = math.atan2(turned[1, 0], turned[0, 0])
 
     def sample(
         self, T_world_tool: Float[Array, "4 4"], rng: np.random.Generator, count: int
@@ -107,11 +119,12 @@ class Reachability:
         everything within reach.
         """
         step = self._heights[1] - self._heights[0]
-        level = round((T_world_tool[2, 3] - self._heights[0]) / step)
+        level = round((T_world_tool[2, 3] - self._rise - self._heights[0]) / step)
         direction = int(np.argmax(self._directions @ T_world_tool[2, :3]))
 
         distance, heading, bearing = self._broad(rng, count)
-        if 0 <= level < len(self._heights) and self._cumulative[level, direction, -1] > 0:
+        covered = self._upright and 0 <= level < len(self._heights)
+        if covered and self._cumulative[level, direction, -1] > 0:
             follow = rng.random(count) >= BROAD_SHARE
             drawn = self._from_table(level, direction, rng, count)
             bounded = np.clip(
@@ -128,7 +141,7 @@ class Reachability:
         turn = T_world_tool[:3, :3] @ self._rotations[direction].T
         yaw_of_tool = math.atan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
         towards = yaw_of_tool - heading  # world direction from the arm's foot to the tool
-        yaw = towards - bearing
+        yaw = towards - bearing - self._turn
 
         cos, sin = np.cos(yaw), np.sin(yaw)
         foot_x, foot_y = self._foot

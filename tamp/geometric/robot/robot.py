@@ -80,6 +80,8 @@ class Robot:
         beside: The other arms of one body: each a robot of the same base and links, which holds
             this arm still. An arm alone has none.
         still_links: Links that are not the arm's and stand still: their poses in the base's frame.
+        tabled: Of an arm of a body: the folder of the robot whose table of reach it takes, and that
+            one's foot in its base's frame. None: the robot's own.
         described: Folders with the covers of links, each with what the links' names begin with
             beside those in the folder; none: the robot's own.
     """
@@ -114,6 +116,7 @@ class Robot:
     beside: tuple[Robot, ...] = ()
     still_links: Mapping[str, Pose] = field(default_factory=dict[str, Pose])
     described: tuple[tuple[str, Path], ...] = ()
+    tabled: tuple[Path, Pose] | None = None
 
     def link(self, name: str) -> Link:
         """Return the link of that name.

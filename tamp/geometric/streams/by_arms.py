@@ -13,7 +13,7 @@ import numpy as np
 
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.streams.motions import plan_pick, plan_place
+from tamp.geometric.streams.motions import plan_base_motion, plan_pick, plan_place
 from tamp.geometric.values import BaseConf, Grasp, Grip, Motion, Path, Reach, Stance
 from tamp.stream import Call, Rejection
 
@@ -55,6 +55,20 @@ def plan_place_by(
 ) -> Iterator[Motion | Rejection]:  # fmt: skip
     """Plan a placement by one of the arms, the others at home with what they hold."""
     return _planned(plan_place, context, arm, body, pose, grasp, base, reach, call)
+
+
+def plan_base_motion_by(
+    context: Context, goal: BaseConf, call: Call
+) -> Iterator[Motion | Rejection]:  # fmt: skip
+    """Plan a drive of the base, all arms at home with what they hold."""
+    held = {values[0]: values[2] for name, *values in call.fluents if name == "holding"}
+    arms = [arm.arm for arm in context.robot.arms]
+    first = next((name for name in arms if name in held), arms[0])
+    own = [("holding", held[first].body, held[first])] if first in held else []
+    fluents = (*own, *(fluent for fluent in call.fluents if fluent[0] != "holding"))
+    here = context.of_arm(first, carried(call, first))
+    for found in plan_base_motion(here, goal, replace(call, fluents=fluents)):
+        yield found if isinstance(found, Rejection) else of_arm(found, first)
 
 
 def _planned(

@@ -7,7 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from tamp.geometric.streams.approach import test_approach, test_approach_clear
-from tamp.geometric.streams.by_arms import by_arm, plan_pick_by, plan_place_by
+from tamp.geometric.streams.by_arms import (
+    by_arm,
+    plan_base_motion_by,
+    plan_pick_by,
+    plan_place_by,
+)
 from tamp.geometric.streams.collisions import test_pose_clear, test_reach_clear
 from tamp.geometric.streams.handover import plan_handover, sample_handover
 from tamp.geometric.streams.inverse_kinematics import inverse_kinematics, inverse_kinematics_here
@@ -50,6 +55,8 @@ STREAMS: Mapping[str, ShippedStream] = {
     "plan-place": ShippedStream(plan_place, StreamKind.MOTION),
     "sample-grasp-by": ShippedStream(by_arm(sample_grasp), StreamKind.GRASPS),
     "inverse-kinematics-by": ShippedStream(by_arm(inverse_kinematics_here), StreamKind.IK),
+    "base-placement-by": ShippedStream(by_arm(inverse_kinematics), StreamKind.IK),
+    "plan-base-motion-by": ShippedStream(plan_base_motion_by, StreamKind.MOTION),
     "test-reachable-by": ShippedStream(by_arm(test_reachable), StreamKind.TESTS),
     "test-approach-by": ShippedStream(by_arm(test_approach), StreamKind.TESTS),
     "test-approach-clear-by": ShippedStream(by_arm(test_approach_clear), StreamKind.TESTS),

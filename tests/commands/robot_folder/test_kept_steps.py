@@ -55,7 +55,7 @@ def test_an_interrupted_run_goes_on_and_ends_the_same(
         return cover(hull)
 
     monkeypatch.setattr(make, "cover", counted)
-    for step in ("table", "allowed_pairs", "misjudged", "home"):
+    for step in ("table", "meetings", "misjudged", "home"):
         monkeypatch.setattr(make, step, never)
     assert main([*words, str(tmp_path / "half" / "arm")]) == 0
     assert contents(tmp_path / "half" / "arm") == contents(tmp_path / "whole" / "arm")
