@@ -29,6 +29,7 @@ FOUR_OBJECTS = {
     "xarm7": "four_objects",
     "pr2": "four_objects",
     "two_pandas": "two_arms_tables",
+    "two_ur5": "two_arms_cupboard",
 }
 """Each shipped robot's version of four_objects: within its reach, of what its gripper can hold."""
 

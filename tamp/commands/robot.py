@@ -244,8 +244,9 @@ def _check(name: str) -> None:
     from tamp.geometric.robot.spheres import link_covers
 
     robot = load_robot(find_robot(name))
-    if not robot.beside:  # several arms are fixed, and ask no table where to stand
-        Reachability(robot)
+    if robot.drive != "fixed" or not robot.beside:  # else no table is asked where to stand
+        for arm in robot.arms:
+            Reachability(arm)
     link_covers(robot)
     check_home(robot)
     off = against_physics(robot)

@@ -182,6 +182,8 @@ def _context(
     prepare(scene.bodies[name] for name in scene.movable)
     if robot.drive != "fixed":
         _ = context.reachability  # read now: what is damaged is told before planning
+        for arm in robot.beside:
+            _ = context.of_arm(arm.arm).reachability
     return context
 
 

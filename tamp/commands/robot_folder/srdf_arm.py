@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from tamp.commands.robot_folder.arm import FEWEST, LARGEST, outwards
 from tamp.commands.robot_folder.description import MOVING, Description
@@ -11,6 +11,9 @@ from tamp.commands.robot_folder.ends import SHOWN, End, ends
 from tamp.commands.robot_folder.srdf import Group, Srdf, links_above
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
+
+ARMS = ("arm", "manipulator")
+"""Words in the names of groups that are arms."""
 
 
 @dataclass(frozen=True)
@@ -32,13 +35,14 @@ class ArmGroup:
 
 
 def choose_arm(srdf: Srdf, description: Description) -> tuple[End | None, str]:
-    """Choose the arm of a URDF that branches: the only one among the groups, with its lift where a
-    group has it; return it with a sentence, or nothing where no group is an arm.
+    """Choose the arm of a URDF that branches: the only group with a hand or the name of an arm, or
+    the only one if no chain of the URDF is longer; of nested ones the longest, with its lift.
 
-    Those with a hand come before those without: a head is a chain, too.
+    Returns:
+        The arm with a sentence about it; nothing where no group is one.
 
     Raises:
-        InputError: Several are, with the choices.
+        InputError: Several are, with the choices: legs and heads are chains, too.
     """
     last: dict[str, ArmGroup] = {}  # the longest that ends with a joint
     for arm in arm_groups(srdf, description):
@@ -48,24 +52,40 @@ def choose_arm(srdf: Srdf, description: Description) -> tuple[End | None, str]:
     if not last:
         return None, ""
 
-    among = [arm for arm in last.values() if arm.hand] or [*last.values()]
-    if len(among) > 1:
-        shown = ", ".join(f"--arm {arm.base} {arm.tip} ({arm.group.name})" for arm in among[:SHOWN])
-        raise InputError(
-            f"the URDF branches, and {srdf.file.name} has {len(among)} groups that may be the arm",
-            file=description.file, remedy=f"Say which: {shown}",
-        )  # fmt: skip
+    found = {_moving(description, end.tip)[-1].name: end for end in ends(description)}
+    named = [arm for arm in last.values() if any(word in arm.group.name.lower() for word in ARMS)]
+    among = [arm for arm in last.values() if arm.hand] or named
+    if not among:
+        among = [*last.values()]
+        longest = max((end.joints for end in found.values()), default=0)
+        sure = len(among) == 1 and len(among[0].joints) >= longest
+    else:
+        sure = len(among) == 1
+    if not sure:
+        raise _several(
+            srdf, description, among, [found[name] for name in found if name not in last]
+        )
 
     arm = among[0]
     said = (
         f"the arm is {srdf.place(arm.group.line)}'s group '{arm.group.name}': "
         f"--arm {arm.base} {arm.tip}"
     )
-    for end in ends(description):
-        moving = _moving(description, end.tip)
-        if moving and moving[-1].name == arm.joints[-1]:
-            return End(arm.base, end.tip, len(arm.joints), end.fingers, end.turning), said
-    return End(arm.base, arm.tip, len(arm.joints)), said
+    end = found.get(arm.joints[-1], End(arm.base, arm.tip, len(arm.joints)))
+    return replace(end, base=arm.base, joints=len(arm.joints)), said
+
+
+def _several(
+    srdf: Srdf, description: Description, groups: Sequence[ArmGroup], others: Sequence[End]
+) -> InputError:
+    """Name the groups that may be the arm, and the chains of which the SRDF says nothing."""
+    shown = [f"--arm {arm.base} {arm.tip} ({arm.group.name})" for arm in groups]
+    shown += [f"--arm {end.base} {end.tip}" for end in others]
+    what = f"{len(groups)} group{'s' if len(groups) > 1 else ''} that may be the arm"
+    return InputError(
+        f"the URDF branches, and {srdf.file.name} has {what}",
+        file=description.file, remedy=f"Say which: {', '.join(shown[:SHOWN])}",
+    )  # fmt: skip
 
 
 def arm_groups(srdf: Srdf, description: Description) -> list[ArmGroup]:

@@ -12,7 +12,7 @@ from tamp.geometric.loading.robot_folder import ASSETS, ROBOT_FILE, read_robot
 from tamp.geometric.robot.robot import Robot
 
 SHIPPED = (
-    "panda_mobile", "panda_fixed", "ur5", "ur5_suction", "xarm7", "pr2", "two_pandas",
+    "panda_mobile", "panda_fixed", "ur5", "ur5_suction", "xarm7", "pr2", "two_pandas", "two_ur5",
 )  # fmt: skip
 """Their names."""
 

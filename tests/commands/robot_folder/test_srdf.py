@@ -104,12 +104,24 @@ def test_of_nested_groups_the_longest_is_the_arm(tmp_path: Path) -> None:
     assert settled(tmp_path, short + long, arm_text(extra=HEAD)).base == "foot"
 
 
-def test_an_arm_with_a_hand_comes_before_a_head(tmp_path: Path) -> None:
+def test_an_arm_with_a_hand_or_an_arms_name_comes_before_a_head(tmp_path: Path) -> None:
     head = '<group name="head"><joint name="nod"/><joint name="look"/></group>'
+    urdf = arm_text(extra=HEAD)
+    assert settled(tmp_path, head + ARM, urdf).tip == "tool"
     with pytest.raises(InputError, match=r"2 groups that may be the arm.*foot eyes \(head\)"):
-        settled(tmp_path, ARM + head, arm_text(extra=HEAD))
+        settled(tmp_path, ARM.replace('"arm"', '"chain"') + head, urdf)
     urdf = arm_text(extra=HEAD + HAND + fingers("prismatic"))
-    assert settled(tmp_path, ARM + head + GRIPPER, urdf).tip == "tool"
+    assert settled(tmp_path, ARM.replace('"arm"', '"a"') + head + GRIPPER, urdf).tip == "tool"
+
+
+def test_a_group_that_is_a_head_is_no_arm_and_hides_none(tmp_path: Path) -> None:
+    head = '<group name="head"><joint name="nod"/><joint name="look"/></group>'
+    with pytest.raises(
+        InputError, match=r"1 group that may.*--arm foot eyes \(head\), --arm foot tool"
+    ):
+        settled(tmp_path, head, arm_text(extra=HEAD))
+    longest = ARM.replace('"arm"', '"chain"')
+    assert settled(tmp_path, longest, arm_text(extra=HEAD)).tip == "tool"
 
 
 def test_the_end_effector_says_which_is_the_gripper(tmp_path: Path) -> None:

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import dataclasses
+import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import tamp
 from tamp.errors import InputError
 from tamp.geometric.collision.collisions import Collisions
 from tamp.geometric.loading.robot_folder import read_robot
 from tamp.geometric.loading.robots import ASSETS, ROBOTS
 from tamp.geometric.robot.arms import Posture, beside
 from tamp.geometric.robot.inverse_kinematics import ArmIK
-from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics
+from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics, base_matrix
+from tamp.geometric.robot.reachability import Reachability
 from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.robot.states import arm_of, columns, rest_row, with_arm
 from tamp.geometric.scene.pose import Pose
@@ -128,7 +131,7 @@ GOOD = (ASSETS / "two_pandas" / "robot.yaml").read_text(encoding="utf-8")
         ),
         ("  left:", "  Left:", "'Left' is no name of an arm"),
         ("  left:", "  right:", "right"),
-        ("drive: fixed", "drive: omnidirectional", "unknown drive of a robot with several arms"),
+        ("drive: fixed", "drive: hovering", "unknown drive 'hovering'"),
         (
             "quaternion: [0.0, 0.0, 0.0, 1.0]",
             "quaternion: [0.0, 0.0, 0.0, 2.0]",
@@ -161,3 +164,44 @@ def test_a_shipped_robots_arm_is_found_by_its_name(tmp_path: Path) -> None:
     assert [arm.arm for arm in made.arms] == ["left", "right"]
     assert all(link.name.startswith(("pedestal", "left_", "right_")) for link in made.links)
     assert {file.parent.name for file in made.files} == {tmp_path.name, "xarm7"}
+
+
+DRIVING = (ASSETS / "two_ur5" / "robot.yaml").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi / 2])
+@pytest.mark.parametrize("rise", [0.0, 0.25])
+def test_an_arm_on_a_base_that_drives_takes_its_own_robots_table_with_its_foot(
+    yaw: float, rise: float, tmp_path: Path
+) -> None:
+    turned = f"quaternion: [0.0, 0.0, {np.sin(yaw / 2)}, {np.cos(yaw / 2)}]"
+    text = DRIVING.replace("quaternion: [0.0, 0.0, 0.0, 1.0]", turned)
+    text = text.replace("-0.35, 0.35]", f"-0.35, {0.35 + rise}]")
+    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
+    right = read_robot(tmp_path).arms[1]
+    assert right.T_base_arm.position[2] == pytest.approx(0.35 + rise)
+
+    T_world_tool = Pose.from_xyz_rpy((0.7, -1.2, 0.9), (np.pi, 0.0, 1.0)).matrix
+    bases = Reachability(right).sample(T_world_tool, np.random.default_rng(0), 200)
+    ik = ArmIK(right)
+    hits = [len(ik.solve(np.linalg.inv(base_matrix(base)) @ T_world_tool, 1)) > 0 for base in bases]
+    assert np.mean(hits) >= 0.75
+
+    feet = np.array([(base_matrix(base) @ right.T_base_arm.matrix)[:2, 3] for base in bases])
+    ways = T_world_tool[:2, 3] - feet
+    facing = np.arctan2(ways[:, 1], ways[:, 0]) - bases[:, 2] - yaw
+    assert np.mean(np.cos(facing) > 0.5) > 0.6
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_the_table_of_every_arm_is_read_before_planning(side: int, tmp_path: Path) -> None:
+    shutil.copytree(ASSETS / "ur5", tmp_path / "mine")
+    (tmp_path / "mine" / "reachability.npz").unlink()
+    both = tmp_path / "both"
+    both.mkdir()
+    parts = DRIVING.split("robot: ur5")
+    parts[side + 1] = f"robot: ../mine{parts[side + 1]}"
+    parts[2 - side] = f"robot: ur5{parts[2 - side]}"
+    (both / "robot.yaml").write_text("".join(parts), encoding="utf-8")
+    with pytest.raises(InputError, match="reachability table is missing"):
+        tamp.load_problem("two_arms_cupboard", robot=both)
