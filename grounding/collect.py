@@ -26,7 +26,7 @@ from tamp.errors import InputError
 from tamp.geometric.loading.load import load_scene
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Part
-from tamp.geometric.stability.stable_poses import SNAP_TILT
+from tamp.geometric.stability.stable_poses import SNAP_TILT_RAD
 
 KINDS = ("holds", "does not hold")
 
@@ -98,7 +98,7 @@ def unstable(data: Dataset) -> list[str]:
         measured = view.measure((view.T_region_world @ example.situation.body.matrix)[None])
         low, nearest = float(measured.low[0, 2]), float(measured.nearest[0])
         wrong: list[str] = []
-        if not len(view.faces) or np.linalg.norm(measured.tilt) > math.sin(SNAP_TILT):
+        if not len(view.faces) or np.linalg.norm(measured.tilt) > math.sin(SNAP_TILT_RAD):
             wrong.append("stands on none of its stable faces")
         if min(low, nearest) > HANGS:
             wrong.append(f"hangs {low * 1e3:.0f} mm above the place")

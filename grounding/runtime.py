@@ -14,7 +14,7 @@ from grounding.relation_scene import relation_scene_of
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.geometric.stability.placement import SNAP_HEIGHT, Placement, placement_on
+from tamp.geometric.stability.placement import SNAP_HEIGHT_M, Placement, placement_on
 from tamp.geometric.stability.stable_poses import stable_faces_of
 
 
@@ -81,6 +81,6 @@ def laid(
         return pose
 
     T_region_body = scene.world_pose(region).inverse() @ pose
-    if abs(T_region_body.position[2] - stable.ways[index].height) > SNAP_HEIGHT:
+    if abs(T_region_body.position[2] - stable.ways[index].height) > SNAP_HEIGHT_M:
         return pose
     return placement_on(index, stable.ways[index], T_region_body, region.name)

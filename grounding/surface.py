@@ -14,8 +14,8 @@ from grounding.separation import Obstacles, separations
 from tamp.geometric.samplers.placements import KEEP_FACE, position_inside
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import CONTACT_GAP
-from tamp.geometric.stability.placement import SNAP_HEIGHT, resting_pose
-from tamp.geometric.stability.stable_poses import SNAP_TILT, WIDTH_SLACK_M, Face
+from tamp.geometric.stability.placement import SNAP_HEIGHT_M, resting_pose
+from tamp.geometric.stability.stable_poses import SNAP_TILT_RAD, WIDTH_SLACK_M, Face
 
 DEPTH = 0.001
 """Bodies may lie this deep in each other, metres."""
@@ -61,9 +61,9 @@ class SurfaceModel:
                 np.abs((inner[:, :3, :3] @ form.centre_of_mass + inner[:, :3, 3])[:, :2]) <= half
             )
         downs = np.array([-face.rotation[2] for face in form.faces]).reshape(-1, 3)
-        upright = (-inner[:, 2, :3] @ downs.T > math.cos(SNAP_TILT)).any(axis=1)
+        upright = (-inner[:, 2, :3] @ downs.T > math.cos(SNAP_TILT_RAD)).any(axis=1)
         free = (separations(form, poses, Obstacles(situation.others)) > -DEPTH).all(axis=1)
-        fits = (np.abs(low[:, 2]) <= SNAP_HEIGHT) & (high[:, 2] <= region.size[2] + WIDTH_SLACK_M)
+        fits = (np.abs(low[:, 2]) <= SNAP_HEIGHT_M) & (high[:, 2] <= region.size[2] + WIDTH_SLACK_M)
         return (above.all(axis=1) & upright & free & fits).astype(np.float64)
 
 
@@ -72,5 +72,5 @@ def _faces(situation: RelationScene) -> list[Face]:
     down = -situation.body.matrix[2, :3]
     return sorted(
         situation.body.form.faces,
-        key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT),
+        key=lambda face: float(-face.rotation[2] @ down) <= math.cos(SNAP_TILT_RAD),
     )

@@ -11,16 +11,22 @@ import numpy as np
 from tamp.geometric.scene.pose import Array, pose_difference
 from tamp.symbolic.pddl.structs import Fact
 
-FAR = 0.01
+MAX_DISPLACEMENT_M = 0.01
 """Metres by which a body may stand elsewhere than expected, or be elsewhere in the hand."""
 
-TURNED = math.radians(12.0)
+MAX_TURN_RAD = math.radians(12.0)
 """Radians by which it may be turned."""
 
-TOPPLED = math.radians(30.0)
+TOLD_DISPLACEMENT_M = 0.005
+"""Metres: a body that nobody handles and that moved less is not worth a line,"""
+
+TOLD_TURN_RAD = 0.09
+"""nor one that turned less, radians."""
+
+TOPPLED_TILT_RAD = math.radians(30.0)
 """A body that is tilted by more than this against what was expected has fallen over."""
 
-KINDS = {
+DEVIATION_KINDS = {
     "lost": "the hand should hold a body and does not",
     "slipped": "a body is elsewhere in the hand",
     "stuck": "the hand holds a body that it should not",
@@ -91,7 +97,7 @@ def deviations(
             yield Deviation("stuck", name, f"{name} is still in the hand")
         elif T is not None:
             moved, turned = pose_difference(T, seen.poses[name])
-            if moved > FAR or turned > TURNED:
+            if moved > MAX_DISPLACEMENT_M or turned > MAX_TURN_RAD:
                 told.add(name)
                 yield _elsewhere(name, T, seen.poses[name], name == active)
 
@@ -109,7 +115,7 @@ def _in_hand(name: str, T_tool_body: Array, seen: Seen) -> Iterator[Deviation]:
         yield Deviation("lost", name, f"{name} is not in the hand")
         return
     moved, turned = pose_difference(T_tool_body, np.linalg.inv(seen.tool) @ seen.poses[name])
-    if moved > FAR or turned > TURNED:
+    if moved > MAX_DISPLACEMENT_M or turned > MAX_TURN_RAD:
         yield Deviation(
             "slipped",
             name,
@@ -128,7 +134,7 @@ def _elsewhere(name: str, T_expected: Array, T_seen: Array, active: bool) -> Dev
             1.0,
         )
     )
-    if math.acos(up) > TOPPLED:
+    if math.acos(up) > TOPPLED_TILT_RAD:
         return Deviation(
             "toppled", name, f"{name} has fallen over, {1000 * moved:.0f} mm away", moved, turned
         )

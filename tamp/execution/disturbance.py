@@ -21,19 +21,19 @@ from tamp.geometric.scene.scene import Body, Box, Part
 from tamp.plan.read import PlanFile, StoredSegment
 from tamp.simulation.actuation import MotorSimulation
 
-OBSTACLE = "obstacle"
+OBSTACLE_NAME = "obstacle"
 """What a blocking body is called."""
 
 OBSTACLE_SIZE = (0.08, 0.08, 0.12)
 """Its edges, metres."""
 
-SHIFT = (0.05, 0.15)
+SHIFT_DISTANCES_M = (0.05, 0.15)
 """Metres by which a body is moved on what it stands on."""
 
 SLIP, TILT = (0.012, 0.025), (math.radians(2.0), math.radians(10.0))
 """Metres down, and radians about the closing axis, by which a body slips in the hand."""
 
-TRIES = 100
+MAX_PLACE_TRIES = 100
 """Places tried for a body before another one is taken."""
 
 
@@ -123,9 +123,9 @@ def _move(now: Disturbance) -> str:
     with FreeSpace(world, now.engine) as room:
         for name in rng.permutation(room.untouched):
             T = world.pose(name)
-            for _ in range(TRIES):
+            for _ in range(MAX_PLACE_TRIES):
                 moved = T.copy()
-                way, turn = rng.uniform(*SHIFT), rng.uniform(-math.pi, math.pi)
+                way, turn = rng.uniform(*SHIFT_DISTANCES_M), rng.uniform(-math.pi, math.pi)
                 moved[:2, 3] += way * np.array([math.cos(turn), math.sin(turn)])
                 moved[:3, :3] = (
                     Pose.from_xyz_yaw(0, 0, 0, rng.uniform(-1.0, 1.0)).rotation @ T[:3, :3]
@@ -212,13 +212,13 @@ def _block(now: Disturbance) -> str:
             if low is None:
                 continue
 
-            for _ in range(TRIES):
+            for _ in range(MAX_PLACE_TRIES):
                 x, y = wanted[int(index)][1][:2, 3] + now.rng.uniform(-0.04, 0.04, 2)
                 T = Pose.from_xyz_yaw(
                     float(x), float(y), low + height / 2, now.rng.uniform(-1.5, 1.5)
                 )
                 box = Body(
-                    OBSTACLE,
+                    OBSTACLE_NAME,
                     (Part(Box(OBSTACLE_SIZE)),),
                     T,
                     movable=False,
@@ -226,7 +226,7 @@ def _block(now: Disturbance) -> str:
                 )
 
                 if room.free(box):
-                    bodies = MappingProxyType({**world.scene.bodies, OBSTACLE: box})
+                    bodies = MappingProxyType({**world.scene.bodies, OBSTACLE_NAME: box})
                     world.reset_scene(replace(world.scene, bodies=bodies))
                     return f"a box is put where {body} should go"
 

@@ -9,14 +9,14 @@ from functools import partial
 
 import numpy as np
 
-from tamp.execution.deviation import Deviation, Seen, deviations
+from tamp.execution.deviation import TOLD_DISPLACEMENT_M, TOLD_TURN_RAD, Deviation, Seen, deviations
 from tamp.execution.disturbance import Disturbance, ScheduledDisturbance, schedule
 from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
 from tamp.execution.hands import in_hand, in_hands, in_other_hands
 from tamp.execution.monitoring import ContactMonitor
-from tamp.execution.motor_commands import CLOSING, TrajectoryPlayer
+from tamp.execution.motor_commands import LEAST_GRIP_DURATION_S, TrajectoryPlayer
 from tamp.execution.observation import ObservedScene, Observer
 from tamp.execution.pauses import without_pauses
 from tamp.execution.relations import own_relations
@@ -41,11 +41,8 @@ STILL_SPEEDS = (0.005, 0.05)
 MAX_SETTLING_S = 4.0
 """at most this long, seconds."""
 
-MOST = 8
+MAX_REPLANS = 8
 """Plans made anew in one run."""
-
-MOVED = (0.005, 0.09)
-"""Metres and radians: a body that nobody handles and that moved less is not worth a line."""
 
 
 def execute(stored: PlanBundle, execution_options: ExecutionOptions | None = None) -> Execution:
@@ -213,7 +210,7 @@ class _Run:
         for name, T in before.items():
             if name not in handled and name in self._world.solids:
                 moved, turned = pose_difference(T, self._world.pose(name))
-                if moved > MOVED[0] or turned > MOVED[1]:
+                if moved > TOLD_DISPLACEMENT_M or turned > TOLD_TURN_RAD:
                     found.append(BodyDisplacement(name, moved, turned))
         return found
 
@@ -266,14 +263,15 @@ class _Run:
         world, held, grasp = self._world, self._held(), None
         if held is None:  # a hand that closed on nothing
             self._player.let_go()
-            world.wait(CLOSING)
+            world.wait(LEAST_GRIP_DURATION_S)
         else:
             T_tool_body = np.linalg.inv(world.tool()) @ world.pose(held)
             grasp = replanner.grasp(held, T_tool_body, world.width())
 
-        if self._replans >= MOST:
-            self._explanation = (f"planned anew {MOST} times, and still it comes differently",)
-            return self._explanation[0]
+        if self._replans >= MAX_REPLANS:
+            why = f"planned anew {MAX_REPLANS} times, and still it comes differently"
+            self._explanation = (why,)
+            return why
 
         truth, found = self._look(), done.deviations
         expected, goal = self._expected, self._goal

@@ -11,7 +11,7 @@ from tamp.plan.read import Hold, PlanFile, TimedAction
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact
 from tamp.verification.semantics import Semantics, State
 
-RELATIONS = ("on", "inside")
+COMPARED_RELATIONS = ("on", "inside")
 """Predicates that are compared with the geometry."""
 
 
@@ -108,7 +108,7 @@ class Expected:
         """
         found: set[Fact] = set()
         for predicate, places in zip(
-            RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True
+            COMPARED_RELATIONS, (self.scene.surfaces, self.scene.cavities), strict=True
         ):
             if (
                 predicate not in self.domain.predicates

@@ -14,7 +14,7 @@ from tamp.simulation.engines import open_world
 from tamp.simulation.shapes import body_points
 from tamp.verification.support_geometry import Supports
 
-APART = 0.005
+CLEARANCE_M = 0.005
 """Metres of air to other bodies that a free place has."""
 
 
@@ -61,7 +61,9 @@ class FreeSpace:
                 world.place(name, self._copy.pose(name))
             stand = Supports(world).stand(body.name)
             others = [name for name in self._scene.bodies if name not in stand.on]
-            clear = all(world.body_distance(body.name, name, APART) >= APART for name in others)
+            clear = all(
+                world.body_distance(body.name, name, CLEARANCE_M) >= CLEARANCE_M for name in others
+            )
             under = (one for one in stand.on if one in world.solids)
             return (
                 stand.why is None
@@ -84,7 +86,8 @@ class FreeSpace:
 
     def _apart(self, name: str, on: frozenset[str]) -> bool:
         return all(
-            self._copy.body_distance(name, other, APART) >= (0.0 if other in on else APART)
+            self._copy.body_distance(name, other, CLEARANCE_M)
+            >= (0.0 if other in on else CLEARANCE_M)
             for other in self._scene.bodies
             if other != name
         )

@@ -6,8 +6,8 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from tamp.errors import InputError
-from tamp.execution.deviation import FAR, TURNED
-from tamp.execution.expected import RELATIONS, Expected
+from tamp.execution.deviation import MAX_DISPLACEMENT_M, MAX_TURN_RAD
+from tamp.execution.expected import COMPARED_RELATIONS, Expected
 from tamp.execution.observation import ObservedScene
 from tamp.execution.relations import Own
 from tamp.execution.report import GoalFact
@@ -22,9 +22,9 @@ from tamp.symbolic.pddl.structs import Atom, Formula, Not
 from tamp.verification.formulas import flat
 from tamp.verification.semantics import Semantics, State
 
-NONE = Own({})
+NO_RELATIONS = Own({})
 
-FLUENTS = frozenset({"holding", "hand-empty", "at-pose"})
+SEEN_FLUENTS = frozenset({"holding", "hand-empty", "at-pose"})
 """Facts that are seen and not believed."""
 
 
@@ -34,7 +34,7 @@ def judged(
     truth: ObservedScene,
     hands: Mapping[str, str | None],
     classifiers: Mapping[str, tuple[str, Classifier]],
-    own: Own = NONE,
+    own: Own = NO_RELATIONS,
 ) -> tuple[GoalFact, ...]:
     """Evaluate each part of the goal, by the geometry; and what the classifiers of its relations
     say. `hands`: the body in each hand, by the names of the arms.
@@ -46,7 +46,7 @@ def judged(
         (name, *row)
         for name, rows in expected.state.facts.items()
         for row in rows
-        if name not in FLUENTS
+        if name not in SEEN_FLUENTS
     }
     facts |= set(_of_hands(expected, hands))
     held = [body for body in hands.values() if body is not None]
@@ -58,7 +58,7 @@ def judged(
         facts = (facts - seen.fails) | seen.holds
 
     state = State.of(facts | truth.facts)
-    semantics = _with_poses(expected.semantics, at).without(RELATIONS)
+    semantics = _with_poses(expected.semantics, at).without(COMPARED_RELATIONS)
     said = {
         **classifiers,
         **{name: (called, classifier) for name, (_, called, classifier) in own.asked.items()},
@@ -156,7 +156,7 @@ def _in_place(
         moved, turned = pose_difference(
             value.data, truth.scene.bodies[bodies[terms[0]]].pose.matrix
         )
-        if moved < FAR and turned < TURNED:
+        if moved < MAX_DISPLACEMENT_M and turned < MAX_TURN_RAD:
             yield terms[0], terms[1]
 
 
@@ -164,7 +164,11 @@ def _moved(part: Formula, there: Mapping[str, str], expected: Expected, own: Own
     """Describe a body of a relation of the user's own that is elsewhere than the plan has it, where
     no classifier decides.
     """
-    if not isinstance(part, Atom) or part.predicate in RELATIONS or part.predicate in own.asked:
+    if (
+        not isinstance(part, Atom)
+        or part.predicate in COMPARED_RELATIONS
+        or part.predicate in own.asked
+    ):
         return None
     placed = {terms[0] for terms in expected.state.all("at-pose")}
     gone = [body for body in part.terms if body in placed - there.keys()]

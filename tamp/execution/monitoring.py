@@ -9,10 +9,10 @@ import numpy as np
 from tamp.simulation.actuation import MotorSimulation
 from tamp.simulation.world import FLOOR_NAME
 
-EVERY = 4
+STEPS_BETWEEN_LOOKS = 4
 """Steps between two looks."""
 
-FELT = 1.0
+LEAST_CONTACT_FORCE_N = 1.0
 """Newtons: weaker touches are not reported."""
 
 
@@ -71,6 +71,6 @@ class ContactMonitor:
                 fine = held and first in self.world.grippers
             else:
                 fine = (first, second) in borne or first == FLOOR_NAME == second
-            if not fine and force >= FELT:
+            if not fine and force >= LEAST_CONTACT_FORCE_N:
                 found.append(ContactEvent(first, second, force))
         return tuple(found)

@@ -10,14 +10,14 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.execution.grasp_modes import GRASPS
-from tamp.execution.monitoring import EVERY, ContactMonitor
+from tamp.execution.monitoring import STEPS_BETWEEN_LOOKS, ContactMonitor
 from tamp.plan.read import StoredSegment
 from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 
-CLOSING = 0.9
+LEAST_GRIP_DURATION_S = 0.9
 """The least that closing or opening takes, seconds: the fingers meet the body and come to rest."""
 
-REST = 0.15
+REST_DURATION_S = 0.15
 """Seconds of standing still after each segment, in which what swings comes to rest."""
 
 Event = Callable[[], None]
@@ -109,18 +109,18 @@ class TrajectoryPlayer:
             world.conf[first : columns[-1] + 1] = row
             world.step_motors(((world.conf - before) * COMMANDS_PER_SECOND).tolist())
             before[:] = world.conf
-            if step % EVERY == 0:
+            if step % STEPS_BETWEEN_LOOKS == 0:
                 watch.look()
                 if guard is not None and not self._between(guard):
                     world.conf[:3] = world.actual()[:3]
                     break
 
-        self._wait(REST, watch)
+        self._wait(REST_DURATION_S, watch)
         return step == count - 1
 
     def _finger(self, segment: StoredSegment, body: str | None, watch: ContactMonitor) -> None:
         world = self._world
-        lasts = max(float(segment.times[-1]), CLOSING)
+        lasts = max(float(segment.times[-1]), LEAST_GRIP_DURATION_S)
         if segment.detach is not None and world.bound is not None:
             self._passing = world.bound
             world.detach()
@@ -145,5 +145,5 @@ class TrajectoryPlayer:
     def _wait(self, seconds: float, watch: ContactMonitor) -> None:
         for step in range(round(seconds * COMMANDS_PER_SECOND)):
             self._world.step_motors()
-            if step % EVERY == 0:
+            if step % STEPS_BETWEEN_LOOKS == 0:
                 watch.look()

@@ -17,15 +17,15 @@ from tamp.simulation.world import FLOOR_NAME
 from tamp.symbolic.pddl.structs import Fact
 from tamp.verification.support_geometry import SupportContact, Supports
 
-STILL = 0.0005
+UNMOVED_DISTANCE_M = 0.0005
 """Metres, and 5 times as many radians, within which a body counts as where it was seen before."""
 
-LIFTED = 0.004
+LIFT_TOLERANCE_M = 0.004
 """Metres by which a seen body is at most lifted or lowered, for the planner's air under
 what rests.
 """
 
-AWAY = Pose((500.0, 0.0, 0.0)).matrix
+AWAY_POSE = Pose((500.0, 0.0, 0.0)).matrix
 """Where the body in the hand carries nobody."""
 
 
@@ -77,7 +77,7 @@ class Observer:
         placed = [name for name in self._scene.movable if name in poses and name != held]
         if held is not None:
             self._seen.pop(held, None)
-            self._world.place(held, AWAY)
+            self._world.place(held, AWAY_POSE)
         self._place(poses, placed)
         bodies = dict(self._scene.bodies)
         facts: set[Fact] = set()
@@ -104,7 +104,8 @@ class Observer:
             before = self._seen.get(name)
             if (
                 before is not None
-                and max(pose_difference(before, T)[0], pose_difference(before, T)[1] / 5) < STILL
+                and max(pose_difference(before, T)[0], pose_difference(before, T)[1] / 5)
+                < UNMOVED_DISTANCE_M
             ):
                 continue
             self._seen[name] = T.copy()
@@ -113,7 +114,7 @@ class Observer:
         for name in sorted(moved, key=lambda one: float(poses[one][2, 3])):
             stand = self._supports.stand(name)
             if stand.on:
-                rise = float(np.clip(CONTACT_GAP - stand.gap, -LIFTED, LIFTED))
+                rise = float(np.clip(CONTACT_GAP - stand.gap, -LIFT_TOLERANCE_M, LIFT_TOLERANCE_M))
                 self._world.place(name, _raised(self._world.pose(name), rise))
 
     def _classify_support(

@@ -9,10 +9,10 @@ import numpy as np
 from tamp.errors import InputError
 from tamp.plan.read import PlanFile, StoredSegment
 
-PAUSE = 10.0
+MAX_PAUSE_S = 10.0
 """Seconds that nothing moves in a segment; what is longer is cut."""
 
-MOST_SECONDS = 7_200.0
+MAX_PLAN_DURATION_S = 7_200.0
 """Of a plan's motion that is carried out."""
 
 
@@ -31,10 +31,9 @@ def without_pauses(plan: PlanFile) -> tuple[PlanFile, float]:
         )
         moving += sum(float(segment.times[-1]) for segment in segments)
         actions.append(replace(action, segments=tuple(segments)))
-    if moving > MOST_SECONDS:
-        what = (
-            f"its motions last {moving:,.0f} s; physics carries out at most {MOST_SECONDS:,.0f} s"
-        )
+    if moving > MAX_PLAN_DURATION_S:
+        most = f"{MAX_PLAN_DURATION_S:,.0f} s"
+        what = f"its motions last {moving:,.0f} s; physics carries out at most {most}"
         raise InputError(what, file=plan.file)
     return (replace(plan, actions=tuple(actions)), cut) if cut else (plan, 0.0)
 
@@ -47,5 +46,5 @@ def _shortened(segment: StoredSegment, plan: PlanFile) -> StoredSegment:
     still = (np.diff(rows, axis=0, prepend=rows[:1]) == 0.0).all(axis=1)
     if segment.part == "gripper":  # which takes the time that fingers take
         still[:] = True
-    longer = np.where(still & (spans > PAUSE), spans - PAUSE, 0.0)
+    longer = np.where(still & (spans > MAX_PAUSE_S), spans - MAX_PAUSE_S, 0.0)
     return replace(segment, times=segment.times - np.cumsum(longer)) if longer.any() else segment

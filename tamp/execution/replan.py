@@ -13,7 +13,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.execution.deviation import Deviation
-from tamp.execution.expected import RELATIONS, Expected
+from tamp.execution.expected import COMPARED_RELATIONS, Expected
 from tamp.execution.observation import ObservedScene
 from tamp.geometric.samplers.choice import USER_OBJECT, Grounding, Registry
 from tamp.geometric.scene.pose import Array, Pose, pose_difference
@@ -27,7 +27,7 @@ from tamp.planner.solve import solve
 from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.structs import Formula
 
-SAME = (0.003, 0.04)
+SAME_POSE_TOLERANCE = (0.003, 0.04)
 """Metres and radians by which a body that is still to be grasped may stand elsewhere for the old
 grasp to serve.
 """
@@ -218,7 +218,7 @@ def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
     terms = {
         term
         for atom, _ in signed_atoms(goal)
-        if atom.predicate not in RELATIONS
+        if atom.predicate not in COMPARED_RELATIONS
         for term in atom.terms
     }
     return {*bodies} if any(term.startswith("?") for term in terms) else terms
@@ -226,7 +226,7 @@ def _placed_so(goal: Formula, bodies: Collection[str]) -> set[str]:
 
 def _same(first: Array, second: Array) -> bool:
     moved, turned = pose_difference(first, second)
-    return moved <= SAME[0] and turned <= SAME[1]
+    return moved <= SAME_POSE_TOLERANCE[0] and turned <= SAME_POSE_TOLERANCE[1]
 
 
 def is_given(sampler: str) -> bool:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from tamp.execution.deviation import KINDS, Seen, deviations
+from tamp.execution.deviation import DEVIATION_KINDS, Seen, deviations
 from tamp.geometric.scene.pose import Array, Pose
 
 HERE = Pose((1.0, 0.0, 0.5)).matrix
@@ -62,7 +62,7 @@ def test_kinds(
 ) -> None:
     found = list(deviations(poses, held, frozenset(facts), seen, "b"))
     assert [one.kind for one in found] == kinds
-    assert set(kinds) <= KINDS.keys()
+    assert set(kinds) <= DEVIATION_KINDS.keys()
 
 
 def test_a_new_body_is_named() -> None:

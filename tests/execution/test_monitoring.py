@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tamp.execution.monitoring import FELT, ContactEvent, ContactMonitor
+from tamp.execution.monitoring import LEAST_CONTACT_FORCE_N, ContactEvent, ContactMonitor
 from tamp.simulation.world import FLOOR_NAME
 from tests.execution.worlds import Noting
 
@@ -71,7 +71,7 @@ def test_a_body_may_touch_what_it_rests_on_before_or_after(when: str) -> None:
 def test_a_weak_touch_is_not_told() -> None:
     world = Noting("cup")
     watch = watched(world)
-    for body, force in (("a", 0.99 * FELT), ("b", FELT)):
+    for body, force in (("a", 0.99 * LEAST_CONTACT_FORCE_N), ("b", LEAST_CONTACT_FORCE_N)):
         world.felt = {("arm", body): force}
         watch.look()
     assert [touch.second for touch in watch.unwanted()] == ["b"]

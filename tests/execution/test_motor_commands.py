@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
-from tamp.execution.monitoring import EVERY, ContactMonitor
-from tamp.execution.motor_commands import CLOSING, REST, TrajectoryPlayer
+from tamp.execution.monitoring import STEPS_BETWEEN_LOOKS, ContactMonitor
+from tamp.execution.motor_commands import LEAST_GRIP_DURATION_S, REST_DURATION_S, TrajectoryPlayer
 from tamp.simulation.actuation import COMMANDS_PER_SECOND
 from tests.execution.worlds import Noting
 from tests.plan.making import arm, base, close, let_go
 
-RESTING = round(REST * COMMANDS_PER_SECOND)
+RESTING = round(REST_DURATION_S * COMMANDS_PER_SECOND)
 
 
 def playing(world: Noting, grasp: str = "constraint") -> tuple[TrajectoryPlayer, ContactMonitor]:
@@ -59,9 +59,11 @@ def test_somebody_looks_now_and_then_from_the_first_step_on(
     player, watch = playing(world)
     monkeypatch.setattr(watch, "look", lambda: looks.append(len(world.ticks)))
     player.play(base([0, 1], [[0, 0, 0], [1, 0, 0]]), None, watch)
-    assert looks[: COMMANDS_PER_SECOND // EVERY] == list(range(1, COMMANDS_PER_SECOND + 1, EVERY))
-    assert looks[COMMANDS_PER_SECOND // EVERY :] == list(
-        range(COMMANDS_PER_SECOND + 1, COMMANDS_PER_SECOND + RESTING + 1, EVERY)
+    assert looks[: COMMANDS_PER_SECOND // STEPS_BETWEEN_LOOKS] == list(
+        range(1, COMMANDS_PER_SECOND + 1, STEPS_BETWEEN_LOOKS)
+    )
+    assert looks[COMMANDS_PER_SECOND // STEPS_BETWEEN_LOOKS :] == list(
+        range(COMMANDS_PER_SECOND + 1, COMMANDS_PER_SECOND + RESTING + 1, STEPS_BETWEEN_LOOKS)
     )
 
 
@@ -89,7 +91,7 @@ def test_the_base_stops_where_it_is_when_what_it_carries_is_gone() -> None:
 
     assert not player.play(way, None, watch, lose, 0.5, guard="cup")
     stopped = len(world.ticks) - RESTING
-    assert COMMANDS_PER_SECOND <= stopped <= COMMANDS_PER_SECOND + EVERY + 1
+    assert COMMANDS_PER_SECOND <= stopped <= COMMANDS_PER_SECOND + STEPS_BETWEEN_LOOKS + 1
     assert world.conf[0] == pytest.approx(stopped / COMMANDS_PER_SECOND)
     assert player.play(
         arm([0, 1], [np.zeros(7), np.ones(7)]), None, watch, guard="cup"
@@ -102,7 +104,7 @@ def test_a_constraint_binds_what_is_between_the_fingers() -> None:
     assert player.play(close("cup", 0.05), "cup", watch)
     assert world.opening == 0.05 and not world.squeezing and world.bound == "cup"
     assert len(world.ticks) == round(
-        CLOSING * COMMANDS_PER_SECOND
+        LEAST_GRIP_DURATION_S * COMMANDS_PER_SECOND
     )  # half a second in the file is less than it takes
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tamp.errors import InputError
-from tamp.execution.pauses import MOST_SECONDS, PAUSE, without_pauses
+from tamp.execution.pauses import MAX_PAUSE_S, MAX_PLAN_DURATION_S, without_pauses
 from tests.plan.making import arm, base, close, plan_of
 
 HOME = [0.0, -0.8, 0.0, -2.0, 0.0, 1.2, 0.8]
@@ -26,9 +26,9 @@ def test_what_stands_still_for_an_hour_stands_for_ten_seconds() -> None:
         ("move", (), [base([0, 4, 3604, 3608], rows)]), ("pick", ("cup",), [close("cup")])
     )
     shortened, cut = without_pauses(plan)
-    assert cut == pytest.approx(3600 - PAUSE)
+    assert cut == pytest.approx(3600 - MAX_PAUSE_S)
     (segment,) = shortened.actions[0].segments
-    assert segment.times == pytest.approx([0, 4, 4 + PAUSE, 8 + PAUSE])
+    assert segment.times == pytest.approx([0, 4, 4 + MAX_PAUSE_S, 8 + MAX_PAUSE_S])
     assert (segment.positions == np.array(rows, float)).all()
     assert shortened.actions[1].segments[0].times.tolist() == [0.0, 0.5]
 
@@ -58,7 +58,7 @@ def test_times_that_run_backwards_are_refused() -> None:
 
 
 def test_hours_of_motion_are_refused_and_of_pauses_not() -> None:
-    one = base([0, MOST_SECONDS / 2 + 1], [[0, 0, 0], [1, 0, 0]])
+    one = base([0, MAX_PLAN_DURATION_S / 2 + 1], [[0, 0, 0], [1, 0, 0]])
     with pytest.raises(
         InputError, match="its motions last 7,202 s; physics carries out at most 7,200 s"
     ):

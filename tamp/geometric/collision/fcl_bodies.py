@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
 
-REMEMBERED = 4096
+MAX_CACHED_GEOMETRIES = 4096
 """Shapes whose geometry is kept: hulls take a millisecond to build."""
 
 
@@ -56,7 +56,7 @@ class FclBody:
         return self.objects[index]
 
 
-@lru_cache(maxsize=REMEMBERED)
+@lru_cache(maxsize=MAX_CACHED_GEOMETRIES)
 def geometry(shape: Shape) -> fcl.CollisionGeometry:
     """Build the FCL geometry of a shape, in the shape's own frame; one for all its objects."""
     if isinstance(shape, Box):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from tamp.geometric.collision.gjk import INLINE, JIT, centre
-from tamp.geometric.collision.tables import FRAME, RADIUS, SLIDES
+from tamp.geometric.collision.tables import FRAME, RADIUS, SLIDES_COLUMN
 from tamp.system.compilation import njit
 
 
@@ -28,7 +28,7 @@ def place_frames(conf, joints, frames):
     f[0, 6], f[0, 7], f[0, 8], f[0, 9], f[0, 10], f[0, 11] = 0.0, 0.0, 1.0, conf[0], conf[1], 0.0
     for j in range(1, joints.shape[0] + 1):
         _compose(f, j - 1, joints, j - 1, f, j)
-        if joints[j - 1, SLIDES] > 0.0:
+        if joints[j - 1, SLIDES_COLUMN] > 0.0:
             for r in range(3):
                 f[j, 9 + r] += conf[2 + j] * f[j, 3 * r + 2]
             continue
@@ -65,7 +65,7 @@ def place_part(i, frames, change, joints, parts, part_poses, placed, reach):
         vx, vy = vx - wz * dy, vy + wz * dx
         bend = lever * change[2]
     for j in range(1, frame + 1):
-        if change[2 + j] > 0.0 and joints[j - 1, SLIDES] > 0.0:
+        if change[2 + j] > 0.0 and joints[j - 1, SLIDES_COLUMN] > 0.0:
             step = change[size + 2 + j]
             vx, vy = vx + step * frames[j, 2], vy + step * frames[j, 5]
             vz += step * frames[j, 8]

@@ -28,7 +28,7 @@ that moves it, 0 for the base; ON_FLOOR: may touch the floor; LOW and HIGH: corn
 box around it (obstacles only). Metres.
 """
 
-SLIDES = 12
+SLIDES_COLUMN = 12
 """Column of a joint's row after its pose: 1 where it slides along its z, 0 where it turns."""
 
 

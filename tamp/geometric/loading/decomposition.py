@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from jaxtyping import Float, Int
 
 MOST_PIECES = 16
-_GRID = 40
-_ENOUGH = 0.01
-_PARTS = 6
-_EXACT = 1e-6
-_MOST_TRIANGLES = 6000
-_DIRECTIONS = np.array(
+_GRID_CELLS = 40  # along each side of the mesh's box
+_AIR_SHARE = 0.01  # air in a piece up to this share of the whole hull is left
+_INTERVALS = 6  # between evenly spread cutting planes
+_WITHIN_M = 1e-6  # metres by which the mesh's box may differ from its pieces'
+_MOST_TRIANGLES = 6000  # of a surface that is cut; a finer one is simplified
+_CUTTING_DIRECTIONS = np.array(
     [[1, 0, 0], [0, 1, 0], [0, 0, 1], [0.5**0.5, 0.5**0.5, 0], [0.5**0.5, -(0.5**0.5), 0]],
     dtype=float,
 )
@@ -72,13 +72,13 @@ def decompose(
     """
     triangles = _coarser(vertices[faces])
     low, high = vertices.min(axis=0), vertices.max(axis=0)
-    size, voxel = float((high - low).max()), float(np.prod((high - low) / _GRID))
+    size, voxel = float((high - low).max()), float(np.prod((high - low) / _GRID_CELLS))
     inside, outside = _grid(triangles, low, high)
     whole = _piece(triangles, np.zeros((0, 4)), inside, outside, voxel)
     pieces, done = [whole], []
     while pieces and len(pieces) + len(done) < most:
         piece = pieces.pop(max(range(len(pieces)), key=lambda i: (pieces[i].filled, -i)))
-        halves = _cut(piece, size, voxel) if piece.filled > _ENOUGH * whole.volume else None
+        halves = _cut(piece, size, voxel) if piece.filled > _AIR_SHARE * whole.volume else None
         if halves is None:
             done.append(piece)
         else:
@@ -92,7 +92,7 @@ def _cut(piece: _Piece, size: float, voxel: float) -> list[_Piece] | None:
     """Cut a piece in two by the best plane; None when no plane has material on both sides."""
     points = piece.triangles.reshape(-1, 3)
     best: tuple[float, list[_Piece]] | None = None
-    for direction in _DIRECTIONS:
+    for direction in _CUTTING_DIRECTIONS:
         along = points @ direction
         for position in _positions(along, piece.air @ direction, 0.02 * size):
             halves = _halves(piece, direction, position, size, voxel)
@@ -111,7 +111,7 @@ def _positions(along: Array, air: Array, margin: float) -> list[float]:
     begins and ends, there at a corner of the surface.
     """
     low, high = float(along.min()), float(along.max())
-    positions = [low + (high - low) * part / _PARTS for part in range(1, _PARTS)]
+    positions = [low + (high - low) * part / _INTERVALS for part in range(1, _INTERVALS)]
     if len(air):
         positions += [
             float(along[np.argmin(np.abs(along - end))]) for end in (air.min(), air.max())
@@ -140,7 +140,7 @@ def _piece(triangles: Array, planes: Array, solid: Array, air: Array, voxel: flo
     if len(points) > 200:
         # Hulls are only compared here: the extreme points in many directions are enough, and ten
         # times faster.
-        points = points[np.unique(np.argmax(points @ _EVEN.T, axis=0))]
+        points = points[np.unique(np.argmax(points @ _SPHERE_DIRECTIONS.T, axis=0))]
     try:
         volume = float(ConvexHull(thickened(points)).volume)
     except (QhullError, ValueError):
@@ -155,9 +155,9 @@ def _grid(triangles: Array, low: Array, high: Array) -> tuple[Array, Array]:
     A column of points along z is inside where the surface above it has been crossed downwards once
     more than upwards.
     """
-    step = (high - low) / _GRID
-    x, y, z = (low[axis] + step[axis] * (np.arange(_GRID) + 0.5) for axis in range(3))
-    turns = np.zeros((_GRID, _GRID, _GRID), dtype=np.int32)
+    step = (high - low) / _GRID_CELLS
+    x, y, z = (low[axis] + step[axis] * (np.arange(_GRID_CELLS) + 0.5) for axis in range(3))
+    turns = np.zeros((_GRID_CELLS, _GRID_CELLS, _GRID_CELLS), dtype=np.int32)
 
     for triangle in triangles:
         (ax, ay, az), (bx, by, bz), (cx, cy, cz) = triangle
@@ -279,7 +279,7 @@ def _grown(cells: list[Array], vertices: Array) -> list[Array]:
     out = distances.min(axis=0) > HULL_TOLERANCE_M / 2
     # The box of the mesh is kept exactly.
     farthest = np.concatenate([np.argmin(vertices, axis=0), np.argmax(vertices, axis=0)])
-    out[farthest] = distances.min(axis=0)[farthest] > _EXACT
+    out[farthest] = distances.min(axis=0)[farthest] > _WITHIN_M
     return [
         np.concatenate([points, vertices[out & (nearest == i)]]) for i, points in enumerate(cells)
     ]
@@ -297,4 +297,4 @@ def _winding(point: Array, triangles: Array) -> float:
     return float(np.arctan2(top, bottom).sum() / (2 * np.pi))
 
 
-_EVEN = directions(70)
+_SPHERE_DIRECTIONS = directions(70)

@@ -21,7 +21,7 @@ SHAPE_TAGS = ("box", "cylinder", "sphere", "capsule", "mesh")
 MOST_ELEMENTS = 2000
 """Collision, or visual, elements of one body."""
 
-FARTHEST = 1e6
+LARGEST_NUMBER = 1e6
 """Metres, or radians: larger numbers are mistakes, and lose the millimetres."""
 
 
@@ -247,6 +247,6 @@ def _numbers(
         raise InputError(
             f"{where}: '{shown}' is not positive and finite" if positive else f"{where}: not finite"
         )
-    if max(map(abs, values), default=0.0) > FARTHEST:
-        raise InputError(f"{where}: '{shown}' is beyond {FARTHEST:g}")
+    if max(map(abs, values), default=0.0) > LARGEST_NUMBER:
+        raise InputError(f"{where}: '{shown}' is beyond {LARGEST_NUMBER:g}")
     return values

@@ -19,14 +19,18 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-MAX_EDGE_CHECKS = (
-    250  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
-)
-MAX_EDGE_RAD = (
-    0.6  # radians, the longest edge of the trees: short ones cost little when they are blocked
-)
-DOMAIN = 4.0  # radians that a sample may be away from where an edge was blocked
-REACH_OMPL = 0.7  # the same for OMPL's planner
+MAX_EDGE_CHECKS = 250
+"""Edges that RRTConnect may ask for at effort 0; each level allows four times as many."""
+
+MAX_EDGE_RAD = 0.6
+"""Radians, the longest edge of the trees: short ones cost little when they are blocked."""
+
+SAMPLING_DOMAIN_RAD = 4.0
+"""Radians that a sample may be away from where an edge was blocked."""
+
+REACH_OMPL = 0.7
+"""The same for OMPL's planner."""
+
 SHORTCUT_TRIES = 30
 SHORTCUT_PATIENCE = 5
 
@@ -101,7 +105,7 @@ def plan_arm(
         moving = Moving(3, lower, upper, np.ones(len(lower)))
         found, asked = connect_compiled(
             checker, moving, conf(start), np.array([conf(goal) for goal in candidates]), seed=seed,
-            checks=budget, deadline=deadline, reach=MAX_EDGE_RAD, domain=DOMAIN,
+            checks=budget, deadline=deadline, reach=MAX_EDGE_RAD, domain=SAMPLING_DOMAIN_RAD,
             shortening=Shortening(shortcuts, SHORTCUT_PATIENCE),
         )  # fmt: skip
         path = None if found is None else found[:, 3:]

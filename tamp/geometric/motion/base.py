@@ -26,17 +26,22 @@ if TYPE_CHECKING:
 DISTANCE_WEIGHTS = np.array([1.0, 1.0, 0.5])
 """A radian of turning weighs half a metre, as in OMPL's SE2 space."""
 
-MAX_EDGE_CHECKS = (
-    200  # edges that RRTConnect may ask for at effort 0; each level allows four times as many
-)
-MAX_EDGE_M = 1.0  # the longest edge of the trees, weighted metres
-DOMAIN = 10.0  # weighted metres that a sample may be away from where an edge was blocked
+MAX_EDGE_CHECKS = 200
+"""Edges that RRTConnect may ask for at effort 0; each level allows four times as many."""
+
+MAX_EDGE_M = 1.0
+"""The longest edge of the trees, weighted metres."""
+
+SAMPLING_DOMAIN_M = 10.0
+"""Weighted metres that a sample may be away from where an edge was blocked."""
+
 SHORTCUT_TRIES = 30
 SHORTCUT_PATIENCE = 8
-CURVE_STEP = (
-    0.05  # metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m
-)
-MAX_PAIRS = 12  # most combinations of a way out of the start and a way into the goal to try
+CURVE_STEP_M = 0.05
+"""Metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m."""
+
+MAX_PAIRS = 12
+"""Most combinations of a way out of the start and a way into the goal to try."""
 
 
 def plan_base(
@@ -156,7 +161,7 @@ def _grown(
         lower, upper = (np.array([room.x[k], room.y[k], (2 * k - 1) * np.pi]) for k in (0, 1))
         found, asked = connect_compiled(
             checker, Moving(0, lower, upper, DISTANCE_WEIGHTS, YAW_COLUMNS[0]), start, goal[None],
-            seed=seed, checks=budget, deadline=deadline, reach=MAX_EDGE_M, domain=DOMAIN,
+            seed=seed, checks=budget, deadline=deadline, reach=MAX_EDGE_M, domain=SAMPLING_DOMAIN_M,
         )  # fmt: skip
         return None if found is None else found[:, :3], asked
 
@@ -228,7 +233,7 @@ def _drive(
     plane = PlaneSpace(room.x, room.y, turning_radius)
 
     def sampled(a: Array, b: Array) -> Array:
-        return unwrap(curve(plane, a, b, CURVE_STEP), YAW_COLUMNS)
+        return unwrap(curve(plane, a, b, CURVE_STEP_M), YAW_COLUMNS)
 
     def curve_free(a: Array, b: Array) -> bool:
         samples = sampled(a, b)

@@ -14,10 +14,10 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-RUN = 4000
+EDGES_PER_TREES = 4000
 """Edges that one pair of trees may ask for, some 40 ms; then new ones are planted."""
 
-ROWS = 2048
+TREE_CAPACITY = 2048
 """Configurations that a tree may have."""
 
 
@@ -91,7 +91,8 @@ def connect_compiled(
         path, more = connected(
             start, np.ascontiguousarray(goals), moving.lower, moving.upper, moving.first,
             moving.weights, moving.periodic, reach, domain, TRANSIT_CLEARANCE_M,
-            min(RUN, checks - asked), ROWS, tries, patience, seed + planting, arrangement.packed,
+            min(EDGES_PER_TREES, checks - asked), TREE_CAPACITY, tries, patience, seed + planting,
+            arrangement.packed,
         )  # fmt: skip
         if len(path):
             return path, asked + more

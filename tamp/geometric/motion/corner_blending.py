@@ -24,17 +24,26 @@ if TYPE_CHECKING:
     from jaxtyping import Float
 
 
-ROUNDING = (
-    0.3  # the largest distance from a corner at which its rounding begins (radians or metres)
-)
-SHARE = (
-    0.4  # of an adjacent edge that a rounding may use: a straight part stays between two roundings
-)
-HALVINGS = 3  # smaller roundings to try where larger ones are not free
-CHORD = 0.06  # length of the chords of a rounding, of which there are between 2 and 8
-TICK = 0.05  # seconds: a corner is passed unrounded if its jump of velocity takes no longer
-NODE_SPACING = 0.1  # spacing of the nodes on straight parts, at which the acceleration may change
-MOST_NODES = 10  # nodes on one straight part
+MAX_BLEND_DISTANCE = 0.3
+"""The largest distance from a corner at which its rounding begins (radians or metres)."""
+
+BLEND_EDGE_SHARE = 0.4
+"""Of an adjacent edge that a rounding may use: a straight part stays between two roundings."""
+
+MAX_BLEND_HALVINGS = 3
+"""Smaller roundings to try where larger ones are not free."""
+
+BLEND_CHORD = 0.06
+"""Length of the chords of a rounding, of which there are between 2 and 8."""
+
+TIME_STEP_S = 0.05
+"""Seconds: a corner is passed unrounded if its jump of velocity takes no longer."""
+
+NODE_SPACING = 0.1
+"""Spacing of the nodes on straight parts, at which the acceleration may change."""
+
+MOST_NODES = 10
+"""Nodes on one straight part."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +109,9 @@ class Corner:
         """Return parameters in [0, 1] between which the chords of the rounding run, evenly spaced
         in the station.
         """
-        return np.linspace(0.0, 1.0, int(np.clip(np.ceil(2.0 * self.reach / CHORD), 2, 8)) + 1)
+        return np.linspace(
+            0.0, 1.0, int(np.clip(np.ceil(2.0 * self.reach / BLEND_CHORD), 2, 8)) + 1
+        )
 
     def curve(self) -> Float[Array, "k d"]:
         """Compute the rounding at those parameters, shape (chords + 1, d)."""
@@ -148,13 +159,16 @@ def _corner(
     edge_free: EdgeTest | None,
 ) -> Corner:
     with np.errstate(divide="ignore"):
-        smooth = TICK**2 * float(np.min(acceleration / np.abs(after - before)))
+        smooth = TIME_STEP_S**2 * float(np.min(acceleration / np.abs(after - before)))
     if 0.5 * shorter <= smooth:
         return Corner(vertex, before, after, window=0.5 * shorter)
     if edge_free is not None:
-        for halving in range(HALVINGS + 1):
+        for halving in range(MAX_BLEND_HALVINGS + 1):
             rounded = Corner(
-                vertex, before, after, reach=min(SHARE * shorter, ROUNDING) * 0.5**halving
+                vertex,
+                before,
+                after,
+                reach=min(BLEND_EDGE_SHARE * shorter, MAX_BLEND_DISTANCE) * 0.5**halving,
             )
             if all(edge_free(a, b) for a, b in pairwise(rounded.curve())):
                 return rounded

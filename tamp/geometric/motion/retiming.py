@@ -25,7 +25,7 @@ from tamp.system.compilation import INNER_KERNEL, njit
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-FLAT = 1e-12
+ZERO_COEFFICIENT = 1e-12
 """A coefficient of u smaller than this bounds x alone."""
 
 
@@ -39,7 +39,7 @@ def _range_of(x, slopes, bends, limits, gap, most):
     high, high_slope = (most - x) / (2.0 * gap), -1.0 / (2.0 * gap)
     for k in range(len(limits)):
         a, b = slopes[k], bends[k]
-        if abs(a) < FLAT:
+        if abs(a) < ZERO_COEFFICIENT:
             continue
         if a < 0.0:
             a, b = -a, -b
@@ -55,7 +55,7 @@ def _range_of(x, slopes, bends, limits, gap, most):
 def _largest(slopes, bends, limits, gap, most, x):
     """Find the largest squared rate, at most x, from which one up to `most` is reached."""
     for k in range(len(limits)):
-        if abs(slopes[k]) < FLAT and abs(bends[k]) * x > limits[k]:
+        if abs(slopes[k]) < ZERO_COEFFICIENT and abs(bends[k]) * x > limits[k]:
             x = limits[k] / abs(bends[k])
     for _ in range(100):
         low, low_slope, high, high_slope = _range_of(x, slopes, bends, limits, gap, most)

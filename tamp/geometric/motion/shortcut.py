@@ -19,7 +19,8 @@ from tamp.geometric.scene.pose import Array
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-MIN_GAIN = 0.01  # a cut that saves less than this share of the path is not worth an edge check
+LEAST_GAIN_SHARE = 0.01
+"""A cut that saves less than this share of the path is not worth an edge check."""
 
 
 def shortcut(
@@ -71,7 +72,9 @@ def shortcut(
         )
 
         landing = nearest(first, second, periodic)
-        if (high - low) * total - math.dist(first * scale, landing * scale) < MIN_GAIN * total:
+        if (high - low) * total - math.dist(
+            first * scale, landing * scale
+        ) < LEAST_GAIN_SHARE * total:
             continue
 
         checks += 1

@@ -12,7 +12,7 @@ from tamp.geometric.collision.kernels import FREE
 from tamp.geometric.motion.tree_loops import uniform, write
 from tamp.system.compilation import njit
 
-GAIN = 0.01
+LEAST_GAIN_SHARE = 0.01
 """A cut that saves less than this share of the path is not worth an edge check."""
 
 
@@ -102,7 +102,7 @@ def cut_at_random(
         low, high = min(first, second), max(first, second)
         i = _point(path, stations, count, low, cut, 0)
         j = _point(path, stations, count, high, cut, 1)
-        if i == j or high - low - _distance(cut[0], cut[1]) < GAIN * total:
+        if i == j or high - low - _distance(cut[0], cut[1]) < LEAST_GAIN_SHARE * total:
             continue
 
         asked += 1

@@ -9,7 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tamp.geometric.motion.corner_blending import TICK, BlendedPath, Corner, blend, corners
+from tamp.geometric.motion.corner_blending import (
+    TIME_STEP_S,
+    BlendedPath,
+    Corner,
+    blend,
+    corners,
+)
 from tamp.geometric.motion.path import without_repeats
 from tamp.geometric.motion.retiming import speeds
 from tamp.geometric.scene.pose import Array
@@ -102,7 +108,7 @@ def _straight(start: Array, end: Array, velocity: Array, acceleration: Array) ->
     """Time one edge from rest to rest."""
     push, ramp, inverse_top = _straight_profile(start, end, velocity, acceleration)
     top, duration = 1.0 / inverse_top, inverse_top + ramp
-    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / TICK))) + 1)
+    times = np.linspace(0.0, duration, max(2, int(np.ceil(duration / TIME_STEP_S))) + 1)
     left = duration - times
     done = np.where(times < ramp, 0.5 * push * times**2, top * (times - 0.5 * ramp))
     done = np.where(left < ramp, 1.0 - 0.5 * push * left**2, done)
@@ -131,7 +137,7 @@ def _sampled(rail: BlendedPath, rates: Array) -> Timed:
     constant between nodes.
     """
     gaps, spans = np.diff(rail.stations), _spans(rail, rates)
-    counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TICK)), 1).astype(int)
+    counts = np.where(rail.straight, np.maximum(1, np.ceil(spans / TIME_STEP_S)), 1).astype(int)
     i = np.repeat(np.arange(len(spans)), counts)  # the interval of each sample
     ends = np.cumsum(counts)
     shares = (np.arange(len(i)) - (ends - counts)[i] + 1) / counts[i]

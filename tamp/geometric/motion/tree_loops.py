@@ -20,9 +20,9 @@ from tamp.geometric.collision.gjk import INLINE, JIT
 from tamp.geometric.collision.kernels import FREE
 from tamp.system.compilation import njit
 
-TURN = 2.0 * math.pi
+FULL_TURN_RAD = 2.0 * math.pi
 
-DRAWS = 100
+DRAWS_PER_EDGE = 100
 """Samples to draw for each edge that may be asked for: most may be outside of the domain."""
 
 
@@ -45,7 +45,7 @@ def _way(start, end, k, periodic):
     """Compute how far coordinate k goes from one to the other, the shorter way round."""
     gap = end[k] - start[k]
     if k == periodic:
-        gap -= TURN * np.rint(gap / TURN)
+        gap -= FULL_TURN_RAD * np.rint(gap / FULL_TURN_RAD)
     return gap
 
 
@@ -117,7 +117,7 @@ def grow(
         edges asked for.
     """
     asked, rows, size = 0, trees.shape[1], len(weights)
-    for _ in range(DRAWS * most):
+    for _ in range(DRAWS_PER_EDGE * most):
         if asked >= most or counts[0] >= rows or counts[1] >= rows:
             break
         for k in range(size):

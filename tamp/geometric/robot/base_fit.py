@@ -14,16 +14,16 @@ from tamp.geometric.scene.pose import Array, Pose
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-STATES = 12
+SAMPLED_CONFIGURATIONS = 12
 """Configurations at which the arm's freedom is looked at."""
 
-SINGULAR = 1e-6
+LEAST_SINGULAR_VALUE = 1e-6
 """A Jacobian's singular value up to which a direction counts as none."""
 
 SHIFT, TURN = 0.15, math.radians(30.0)
 """Metres and radians by which a base pose is changed, at most."""
 
-SEEDS = 12
+ARM_STARTS = 12
 """Starts of the arm from which the change is looked for."""
 
 _X, _Y = (np.roll(np.eye(3), turns, axis=1) for turns in (2, 1))
@@ -33,9 +33,9 @@ _X, _Y = (np.roll(np.eye(3), turns, axis=1) for turns in (2, 1))
 def freedom(robot: Robot) -> int:
     """Return in how many directions the arm can move the tool: six, or fewer."""
     chain, rng, most = Chain.of(robot), np.random.default_rng(0), 0
-    for _ in range(STATES):
+    for _ in range(SAMPLED_CONFIGURATIONS):
         J = _jacobian(chain, rng.uniform(chain.lower, chain.upper))
-        most = max(most, int((np.linalg.svd(J, compute_uv=False) > SINGULAR).sum()))
+        most = max(most, int((np.linalg.svd(J, compute_uv=False) > LEAST_SINGULAR_VALUE).sum()))
         if most == 6:
             break
     return most
@@ -93,9 +93,11 @@ class BaseFit:
         )
         self._home = np.concatenate([np.zeros(3), chain.home])
         low = np.maximum(chain.lower, chain.home - np.pi)
-        starts = low + spread(SEEDS, len(low)) * (np.minimum(chain.upper, chain.home + np.pi) - low)
+        starts = low + spread(ARM_STARTS, len(low)) * (
+            np.minimum(chain.upper, chain.home + np.pi) - low
+        )
         starts[0] = chain.home
-        self._seeds = np.concatenate([np.zeros((SEEDS, 3)), starts], axis=1)
+        self._seeds = np.concatenate([np.zeros((ARM_STARTS, 3)), starts], axis=1)
 
     def fit(
         self, T_world_tool: Float[Array, "4 4"], base: Float[Array, " 3"]
@@ -109,7 +111,7 @@ class BaseFit:
         T_world_base = Pose.from_xyz_yaw(float(base[0]), float(base[1]), 0.0, float(base[2])).matrix
         target = np.ascontiguousarray(np.linalg.inv(T_world_base) @ T_world_tool)
         found, count = damped_least_squares(
-            *self._arrays, self._home, target, self._seeds, SEEDS, 1
+            *self._arrays, self._home, target, self._seeds, ARM_STARTS, 1
         )
         if not count:
             return np.asarray(base, dtype=float)

@@ -22,19 +22,19 @@ from tamp.geometric.robot.arm_kernels import (
 )
 from tamp.system.compilation import INNER_KERNEL, njit
 
-ITERATIONS = 40
+MAX_STEPS = 40
 """Steps from one start, at most."""
 
-SLOW = 6
+MAX_SLOW_STEPS = 6
 """Steps in a row that do not halve the error after which a start is given up."""
 
-WEIGHT = 0.1
+ROTATION_WEIGHT_M2 = 0.1
 """Square metres that a squared radian weighs."""
 
-MET = 1e-14
+CONVERGED_ERROR = 1e-14
 """Squared error, of the position in metres and of the rotation in radians, that counts as met."""
 
-APART = 0.05
+LEAST_DIFFERENCE = 0.05
 """Radians or metres in some joint by which two solutions differ that count as two."""
 
 
@@ -66,7 +66,7 @@ def _descend(
     `free`.
     """
     n, best, slow = len(origins), 1e30, 0
-    for _ in range(ITERATIONS):
+    for _ in range(MAX_STEPS):
         frames(origins, slides, T_flange_tool, q, joints, tool)
         away = turned = 0.0
         _rotation_vector(tool, target, error)
@@ -74,13 +74,13 @@ def _descend(
             error[r] = target[r, 3] - tool[r, 3]
             away += error[r] * error[r]
             turned += error[3 + r] * error[3 + r]
-        if away < MET and turned < MET:
+        if away < CONVERGED_ERROR and turned < CONVERGED_ERROR:
             return True
 
-        total = away + WEIGHT * turned
+        total = away + ROTATION_WEIGHT_M2 * turned
         if total > 0.5 * best:
             slow += 1
-            if slow > SLOW:
+            if slow > MAX_SLOW_STEPS:
                 return False
         best = min(best, total)
 
@@ -88,11 +88,11 @@ def _descend(
         for i in range(n):
             g[i] = 0.0
             for r in range(6):
-                g[i] += (1.0 if r < 3 else WEIGHT) * J[r, i] * error[r]
+                g[i] += (1.0 if r < 3 else ROTATION_WEIGHT_M2) * J[r, i] * error[r]
             for j in range(i + 1):
                 A[i, j] = 1e-11 + 0.05 * total if i == j else 0.0
                 for r in range(6):
-                    A[i, j] += (1.0 if r < 3 else WEIGHT) * J[r, i] * J[r, j]
+                    A[i, j] += (1.0 if r < 3 else ROTATION_WEIGHT_M2) * J[r, i] * J[r, j]
 
         for i in range(n):  # a joint at a limit that would be pushed out of it is frozen
             if not free and (
@@ -160,7 +160,7 @@ def damped_least_squares(
             largest = 0.0
             for i in range(n):
                 largest = max(largest, abs(q[i] - found[k, i]))
-            inside = inside and largest > APART
+            inside = inside and largest > LEAST_DIFFERENCE
         if inside:
             for i in range(n):
                 found[count, i] = q[i]

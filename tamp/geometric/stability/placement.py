@@ -17,7 +17,7 @@ from tamp.geometric.scene.scene import CONTACT_GAP, Cavity, Surface
 from tamp.geometric.stability.stable_poses import Face, StableFaces, is_under
 from tamp.stream import Rejection, RejectionKind
 
-SNAP_HEIGHT = 0.03
+SNAP_HEIGHT_M = 0.03
 """A proposal whose lowest point is this near to the surface is put onto it (the paper's tolerance
 for `on`), metres."""
 
@@ -62,7 +62,7 @@ def snap_to_region(
 
     T_region_body = T_world_region.inverse() @ T_world_body
     bottom = T_region_body.position[2] - face.height
-    if abs(bottom) > SNAP_HEIGHT:
+    if abs(bottom) > SNAP_HEIGHT_M:
         return Rejection("too high" if bottom > 0 else "too low", kind=RejectionKind.UNSTABLE)
 
     return placement_on(index, face, T_region_body, region.name)

@@ -15,7 +15,7 @@ from tamp.system.compilation import INNER_KERNEL, njit
 
 OUTER = {"cache": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 
-PARALLEL = 1e-12
+PARALLEL_SLOPE = 1e-12
 """A line whose slope to a plane is smaller runs along it."""
 
 ROWS, VECTOR = types.Array(types.float64, 2, "C"), types.Array(types.float64, 1, "C")
@@ -34,10 +34,10 @@ def _cross(origin, direction, normals, offsets, begin, end):
     for k in range(begin, end):
         slope = normals[k, 0] * dx + normals[k, 1] * dy + normals[k, 2] * dz
         room = offsets[k] - (normals[k, 0] * ox + normals[k, 1] * oy + normals[k, 2] * oz)
-        if slope < -PARALLEL:
+        if slope < -PARALLEL_SLOPE:
             if room / slope > enter:
                 enter, start_plane = room / slope, k
-        elif slope > PARALLEL:
+        elif slope > PARALLEL_SLOPE:
             if room / slope < leave:
                 leave, end_plane = room / slope, k
         elif room < 0.0 and enter < math.inf:

@@ -9,7 +9,7 @@ from typing import TypeVar
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Hull, Part
 
-MOST = 256
+MAX_CACHED_SHAPES = 256
 """Shapes that are remembered of each function; the one asked for longest ago goes first."""
 
 T = TypeVar("T")
@@ -27,7 +27,7 @@ def once_a_shape(function: Callable[[Body], T]) -> Callable[[Body], T]:
         if key not in cached:
             shape = Body("", body.parts, Pose(), movable=True, center_of_mass=body.center_of_mass)
             cached[key] = function(shape)
-            if len(cached) > MOST:
+            if len(cached) > MAX_CACHED_SHAPES:
                 cached.popitem(last=False)
         cached.move_to_end(key)
         return cached[key]

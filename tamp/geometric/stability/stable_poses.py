@@ -21,7 +21,7 @@ from tamp.geometric.stability.shapes import once_a_shape
 if TYPE_CHECKING:
     from jaxtyping import Float
 
-SNAP_TILT = math.radians(15.0)
+SNAP_TILT_RAD = math.radians(15.0)
 """A proposal tilted less than this from a stable face, or than the face withstands, is laid onto
 that face."""
 
@@ -98,7 +98,7 @@ class StableFaces:
         faces = stable_faces(self.body)
         faces.sort(
             key=lambda face: (
-                -round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT)),
+                -round(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT_RAD)),
                 -face.angle,
             )
         )
@@ -117,7 +117,7 @@ class StableFaces:
             isinstance(part.shape, Sphere) for part in self.body.parts
         ):
             return None
-        if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT) for face in self.faces):
+        if any(float(-face.rotation[2] @ down) > math.cos(SNAP_TILT_RAD) for face in self.faces):
             return None
         return curved_face(self.body, self.body.pose.rotation)
 
@@ -166,7 +166,7 @@ class StableFaces:
         best = max(numbers, key=lambda number: float(self.face(number).rotation[2] @ rotation[2]))
         face = self.face(best)
         cosine = float(face.rotation[2] @ rotation[2])
-        return best if cosine >= math.cos(max(SNAP_TILT, face.angle)) else None
+        return best if cosine >= math.cos(max(SNAP_TILT_RAD, face.angle)) else None
 
     def index_of(self, rotation: Float[Array, "3 3"]) -> int | None:
         """Find the way that this rotation (3, 3) turns down, exactly: an index of `ways`."""

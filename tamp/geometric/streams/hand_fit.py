@@ -39,7 +39,7 @@ PAD_GIVE_M = 1.5e-3
 CLEAR_APPROACH = 0.10
 """The open hand must be free of the body while it draws back this far, metres."""
 
-BACK = 0.02
+BACK_STEP_M = 0.02
 """Steps in which it is looked at there, metres."""
 
 PAD_POINTS_M = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
@@ -99,7 +99,7 @@ class GraspChecker:
         cone.
         """
         opening = self._robot.opening
-        fits, left, right = closed(_row(T_body_tool), opening, 0.0, BACK, *self._tables)
+        fits, left, right = closed(_row(T_body_tool), opening, 0.0, BACK_STEP_M, *self._tables)
         if not fits or left + right > self.widest:
             return None
 
@@ -107,7 +107,10 @@ class GraspChecker:
         T[:3, 3] += T[:3, 1] * (left - right) / 2
         width = left + right + OPENING_SLACK_M
         patches = self._opposed(T, width)
-        if patches is None or not closed(_row(T), opening, CLEAR_APPROACH, BACK, *self._tables)[0]:
+        if (
+            patches is None
+            or not closed(_row(T), opening, CLEAR_APPROACH, BACK_STEP_M, *self._tables)[0]
+        ):
             return None
         return Closed(T, width, patches)
 

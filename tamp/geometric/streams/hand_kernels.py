@@ -17,16 +17,16 @@ from tamp.geometric.collision.gjk import APART, INLINE, JIT, centre, separation
 from tamp.geometric.collision.tables import RADIUS
 from tamp.system.compilation import njit
 
-TOUCH = 1e-6
+TOUCH_DISTANCE_M = 1e-6
 """Metres that count as touching."""
 
-WALK = 0.005
+CLOSING_STEP_M = 0.005
 """Steps of a closing finger, metres: a thin wall must not be jumped over."""
 
-BEHIND = -0.02
+CLOSING_END_M = -0.02
 """How far beyond the middle a finger closes, metres."""
 
-EXACT = 1e-4
+CONTACT_PRECISION_M = 1e-4
 """To how many metres a contact is found."""
 
 
@@ -57,12 +57,13 @@ def touches(
         for j in range(len(body)):
             bx, by, bz = centre(body, j, body_poses)
             dx, dy, dz = x - bx, y - by, z - bz
-            limit = parts[k, RADIUS] + body[j, RADIUS] + TOUCH
+            limit = parts[k, RADIUS] + body[j, RADIUS] + TOUCH_DISTANCE_M
             if dx * dx + dy * dy + dz * dz > limit * limit:
                 continue
             guess[0], guess[1], guess[2] = dx, dy, dz
             answer = separation(
-                parts, k, placed, body, j, body_poses, vertices, TOUCH, TOUCH, guess, s, weights
+                parts, k, placed, body, j, body_poses, vertices, TOUCH_DISTANCE_M,
+                TOUCH_DISTANCE_M, guess, s, weights,
             )  # fmt: skip
             if answer != APART:
                 return True
@@ -100,20 +101,20 @@ def _compiled(sources: int) -> Callable[..., tuple[bool, float, float]]:
             return True, 0.0, 0.0
 
         for finger in range(2):
-            free, blocked, met = opening / 2, BEHIND, False
-            while not met and free - WALK > BEHIND:
+            free, blocked, met = opening / 2, CLOSING_END_M, False
+            while not met and free - CLOSING_STEP_M > CLOSING_END_M:
                 met = touches(
-                    groups[finger], groups[finger + 1], tool, free - WALK, parts, poses, along,
-                    body, body_poses, vertices, placed, guess, s, weights,
+                    groups[finger], groups[finger + 1], tool, free - CLOSING_STEP_M, parts, poses,
+                    along, body, body_poses, vertices, placed, guess, s, weights,
                 )  # fmt: skip
                 if met:
-                    blocked = free - WALK
+                    blocked = free - CLOSING_STEP_M
                 else:
-                    free -= WALK
+                    free -= CLOSING_STEP_M
             if not met:
                 return False, 0.0, 0.0
 
-            while free - blocked > EXACT:
+            while free - blocked > CONTACT_PRECISION_M:
                 middle = (free + blocked) / 2
                 if touches(
                     groups[finger], groups[finger + 1], tool, middle, parts, poses, along, body,

@@ -36,7 +36,7 @@ MAX_FAILED_TRIES = 8
 ARM_SOLUTIONS = 4
 """Configurations of each arm that are looked at for one pose."""
 
-LOOKS = (1.0, 0.75, 0.5, 0.25, 0.0)
+LOOK_SHARES = (1.0, 0.75, 0.5, 0.25, 0.0)
 """Where on their way to the body the hands are looked at, shares of the way that remains."""
 
 FINGER_STEP_M = 0.005
@@ -89,7 +89,7 @@ def _hands_meet(
     for opening in _between(other.opening, two.robot.opening):
         if two.hand.meets(opening, T_body_taker, one.hand, grasp.opening, T_body_giver):
             return "the taker's fingers hit the giver's as they close"
-    for share in LOOKS:
+    for share in LOOK_SHARES:
         coming, going = _back(T_body_taker, share), _back(T_body_giver, share)
         if one.hand.meets(grasp.opening, T_body_giver, two.hand, two.robot.opening, coming):
             return "the taker's hand hits the giver's"

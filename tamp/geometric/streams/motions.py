@@ -28,7 +28,7 @@ MAX_EFFORT = 4
 """The greatest effort of a motion plan; each level allows four times as many edges as the one
 before."""
 
-TELLING = 2
+DIAGNOSIS_EFFORT = 2
 """The effort from which on a base that finds no way is told why: looking for a narrow gap takes
 longer than the tries before."""
 
@@ -209,7 +209,11 @@ def _diagnosed(
         ahead = _straight_ahead(context, held, query)
         where = f" (straight ahead: {' and '.join(ahead)})" if ahead else ""
         ends = [end[:2] for end in query.ends]
-        asked = failure is Failure.EXHAUSTED and effort >= TELLING and (ends[0] != ends[1]).any()
+        asked = (
+            failure is Failure.EXHAUSTED
+            and effort >= DIAGNOSIS_EFFORT
+            and (ends[0] != ends[1]).any()
+        )
         gap = context.passage.narrow(ends[1]) if asked else None
         failed = failure.value if gap is None else gap.text
         what = f"no motion even without the movable bodies: {failed}{where}"

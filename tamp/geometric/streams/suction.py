@@ -29,7 +29,7 @@ from tamp.geometric.streams.firmness import (
 )
 from tamp.geometric.streams.grasp_directions import MAX_UPWARD_PART, across
 from tamp.geometric.streams.grasps import refuse_none, take_any_way
-from tamp.geometric.streams.hand_fit import BACK, CLEAR_APPROACH
+from tamp.geometric.streams.hand_fit import BACK_STEP_M, CLEAR_APPROACH
 from tamp.geometric.values import Grasp
 from tamp.stream import Rejection
 
@@ -48,7 +48,7 @@ ABOVE_M = 0.01
 RIM_POINTS = 16
 """Points of the rim that are looked at; as many at half of its radius, and the middle."""
 
-SPINS = 8
+SPINS_PER_PLACE = 8
 """Turns of the hand about the cup's axis that are tried on each canonical place."""
 
 PLACES_LOOKED_FOR = 256
@@ -191,7 +191,7 @@ class _CupFit:
 
     def clear(self, T_body_tool: Float[Array, "4 4"]) -> bool:
         """Check whether the hand is free of the body at a pose and while it draws back."""
-        for far in np.arange(0.0, CLEAR_APPROACH + 1e-9, BACK):
+        for far in np.arange(0.0, CLEAR_APPROACH + 1e-9, BACK_STEP_M):
             T = T_body_tool @ self._T_tool_hand
             T[:3, 3] -= far * T_body_tool[:3, 2]
             for a in range(len(self._hand.objects)):
@@ -234,7 +234,7 @@ def _canonical(
         elif beside is not None and fit.sealed(beside, normal, 0.0, up) is not None:
             places.append((beside, normal))
 
-    for spin in rng.permutation(SPINS) * 2 * math.pi / SPINS:
+    for spin in rng.permutation(SPINS_PER_PLACE) * 2 * math.pi / SPINS_PER_PLACE:
         tools = (fit.sealed(point, normal, float(spin), up) for point, normal in places)
         yield [T for T in tools if T is not None]
 

@@ -9,8 +9,9 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
+from tamp.planner.pddl_only.cheaper_plan import refutation
 from tamp.planner.pddl_only.problem import SymbolicProblem
-from tamp.planner.pddl_only.solve import SymbolicSolution, refutation, solve_symbolic
+from tamp.planner.pddl_only.solve import SymbolicSolution, solve_symbolic
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.search import Plan, Reason, search

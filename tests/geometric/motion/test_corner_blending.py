@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion.corner_blending import (
-    CHORD,
-    HALVINGS,
+    BLEND_CHORD,
+    BLEND_EDGE_SHARE,
+    MAX_BLEND_DISTANCE,
+    MAX_BLEND_HALVINGS,
     MOST_NODES,
     NODE_SPACING,
-    ROUNDING,
-    SHARE,
     Corner,
     blend,
     corners,
@@ -39,7 +39,9 @@ def test_without_a_checker_the_motion_rests_at_each_sharp_corner() -> None:
     assert elbow.bend.tolist() == [0.0, 0.0]
 
 
-@pytest.mark.parametrize(("edge", "reach"), [(0.5, SHARE * 0.5), (5.0, ROUNDING)])
+@pytest.mark.parametrize(
+    ("edge", "reach"), [(0.5, BLEND_EDGE_SHARE * 0.5), (5.0, MAX_BLEND_DISTANCE)]
+)
 def test_a_free_corner_is_rounded_by_a_share_of_the_shorter_edge_up_to_a_limit(
     edge: float, reach: float
 ) -> None:
@@ -60,7 +62,9 @@ def test_the_rounding_is_the_parabola_that_touches_both_edges() -> None:
     assert elbow.before + 2 * 0.12 * elbow.bend == pytest.approx(elbow.after)
 
 
-@pytest.mark.parametrize(("reach", "chords"), [(0.001, 2), (2 * CHORD, 4), (ROUNDING, 8)])
+@pytest.mark.parametrize(
+    ("reach", "chords"), [(0.001, 2), (2 * BLEND_CHORD, 4), (MAX_BLEND_DISTANCE, 8)]
+)
 def test_a_rounding_has_chords_of_one_length_between_two_and_eight(
     reach: float, chords: int
 ) -> None:
@@ -77,8 +81,8 @@ def test_smaller_roundings_are_tried_where_larger_ones_hit() -> None:
         return bool((np.linalg.norm(points - post, axis=1) > 0.04).all())
 
     _, elbow, _ = corners(ELBOW, PUSH, clear)
-    assert 0.0 < elbow.reach < ROUNDING
-    assert math.log2(ROUNDING / elbow.reach) in range(1, HALVINGS + 1)
+    assert 0.0 < elbow.reach < MAX_BLEND_DISTANCE
+    assert math.log2(MAX_BLEND_DISTANCE / elbow.reach) in range(1, MAX_BLEND_HALVINGS + 1)
     larger = Corner(elbow.vertex, elbow.before, elbow.after, reach=2 * elbow.reach).curve()
     assert not all(clear(a, b) for a, b in itertools.pairwise(larger))
 

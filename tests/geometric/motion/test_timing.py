@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion import timing
-from tamp.geometric.motion.corner_blending import TICK, BlendedPath
+from tamp.geometric.motion.corner_blending import TIME_STEP_S, BlendedPath
 from tamp.geometric.motion.retiming import speeds
 from tamp.geometric.motion.timing import Timed, time_path
 from tamp.geometric.scene.pose import Array
@@ -107,7 +107,7 @@ def test_a_refused_rounding_rests_at_the_corner() -> None:
         np.abs(timed.positions[corner] - timed.positions[corner - 1])
         / np.diff(timed.times)[corner - 1]
     )
-    assert np.all(before <= ACCELERATION * TICK)
+    assert np.all(before <= ACCELERATION * TIME_STEP_S)
 
 
 def test_a_straight_line_takes_the_least_time() -> None:

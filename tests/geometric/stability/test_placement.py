@@ -10,7 +10,7 @@ import pytest
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Body, Box, Cavity, Cylinder, Part, Surface
 from tamp.geometric.stability.placement import (
-    SNAP_HEIGHT,
+    SNAP_HEIGHT_M,
     Placement,
     certified_pose,
     placed_pose,
@@ -56,7 +56,7 @@ def test_tilt_and_height_within_the_limits_are_taken_away() -> None:
     said = Placement("top", 0, 0.03, -0.02, 0.5)
     flush = placed_pose(FACES, said, T_WORLD_TOP)
     above = Pose(
-        (flush.position[0], flush.position[1], flush.position[2] + 0.9 * SNAP_HEIGHT),
+        (flush.position[0], flush.position[1], flush.position[2] + 0.9 * SNAP_HEIGHT_M),
         flush.quaternion,
     )
     leaning = above @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (math.radians(5.0), 0.0, 0.0))
@@ -70,7 +70,7 @@ def test_what_does_not_rest_is_rejected_with_its_kind() -> None:
     flush = placed_pose(FACES, Placement("top", 0, 0.0, 0.0, 0.0), T_WORLD_TOP)
     x, y, z = flush.position
     high, low = (
-        Pose((x, y, z + side * 1.1 * SNAP_HEIGHT), flush.quaternion) for side in (1.0, -1.0)
+        Pose((x, y, z + side * 1.1 * SNAP_HEIGHT_M), flush.quaternion) for side in (1.0, -1.0)
     )
     on_edge = flush @ Pose.from_xyz_rpy((0.0, 0.0, 0.0), (math.radians(45.0), 0.0, 0.0))
     assert reason(snap_to_region(FACES, high, TOP, T_WORLD_TOP)) == (

@@ -6,7 +6,7 @@ import numpy as np
 
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Hull, Part
-from tamp.geometric.stability.shapes import MOST, once_a_shape
+from tamp.geometric.stability.shapes import MAX_CACHED_SHAPES, once_a_shape
 
 CORNERS = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.1]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
@@ -49,9 +49,9 @@ def test_another_scale_place_of_a_part_or_centre_of_mass_is_another_shape() -> N
 
 def test_no_more_shapes_are_remembered_than_said() -> None:
     asked, look = _counting()
-    for k in range(MOST + 1):
+    for k in range(MAX_CACHED_SHAPES + 1):
         look(_tetrahedron(1.0 + k))  # type: ignore[operator]
-    look(_tetrahedron(1.0 + MOST))  # type: ignore[operator]
-    assert len(asked) == MOST + 1
+    look(_tetrahedron(1.0 + MAX_CACHED_SHAPES))  # type: ignore[operator]
+    assert len(asked) == MAX_CACHED_SHAPES + 1
     look(_tetrahedron(1.0))  # type: ignore[operator]
-    assert len(asked) == MOST + 2
+    assert len(asked) == MAX_CACHED_SHAPES + 2

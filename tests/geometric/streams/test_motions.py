@@ -215,7 +215,7 @@ def test_a_narrow_gap_is_looked_for_from_the_second_effort_on_when_the_base_move
     world.passage.narrow = lambda goal: gap
     found = first(motions.plan_base_motion(world, GOAL, call(at_base())))
     assert ["door" in one.bodies for one in found] == [
-        effort >= motions.TELLING for effort in range(motions.MAX_EFFORT + 1)
+        effort >= motions.DIAGNOSIS_EFFORT for effort in range(motions.MAX_EFFORT + 1)
     ]
     assert found[-1].reason.endswith("the door is 0.4 m wide")
     here = BaseConf(0.0, 0.0, 1.0)  # it only turns: no door is in question
