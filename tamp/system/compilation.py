@@ -24,7 +24,7 @@ from tamp.system.quick_compiling import (
     generate_code_when_called,
     optimize_with_one_manager,
 )
-from tamp.system.quick_loading import load_without_compiler
+from tamp.system.quick_loading import compile_what_cannot_be_read, load_without_compiler
 from tamp.system.quick_typing import (
     list_variables_quickly,
     measure_types_once,
@@ -84,6 +84,7 @@ list_variables_quickly()
 measure_types_once()
 tell_only_listeners()
 load_without_compiler()
+compile_what_cannot_be_read()
 
 
 def njit(

@@ -53,6 +53,54 @@ def run(folder: Path, hits: int, **environment: str) -> str:
     return done.stderr
 
 
+RENAMED = """
+from typing import NamedTuple
+from tamp.system.compilation import njit
+class NAME(NamedTuple):
+    one: int
+@njit(cache=True)
+def first(some): return some.one
+assert first(NAME(3)) == 3
+"""
+
+
+def test_a_cache_of_classes_that_have_other_names_now_is_compiled_anew(tmp_path: Path) -> None:
+    """Whoever upgrades keeps the old version's cache: its index names classes that are no more."""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    environment["NUMBA_CACHE_DIR"] = str(tmp_path / "cache")
+    for name in ("Task", "PackedTask", "PackedTask"):
+        (tmp_path / "renamed.py").write_text(RENAMED.replace("NAME", name))
+        done = subprocess.run(
+            [sys.executable, "-c", "import renamed"],
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+    (index,) = (tmp_path / "cache").rglob("*.nbi")
+    assert b"PackedTask" in index.read_bytes()
+
+
+def test_a_cache_that_was_cut_off_is_compiled_anew(tmp_path: Path) -> None:
+    cache = str(tmp_path / "cache")
+    assert run(tmp_path, 0, NUMBA_CACHE_DIR=cache) == ""
+    source = (tmp_path / "adding.py").read_text().replace("== 0", "in (0, 1)")
+    (tmp_path / "adding.py").write_text(source + "print(sum(add.stats.cache_hits.values()))")
+
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    environment["NUMBA_CACHE_DIR"] = cache
+    hits: list[str] = []
+    for broken in ("", "", "nbi", "", "nbc", ""):
+        for file in Path(cache).rglob(f"*.{broken}") if broken else ():
+            file.write_bytes(file.read_bytes()[:20])
+        done = subprocess.run(
+            [sys.executable, "-c", "import adding"], env=environment, capture_output=True, text=True
+        )
+        assert done.stderr == ""
+        hits.append(done.stdout.strip())
+    assert hits == ["0", "1", "0", "1", "0", "1"]
+
+
 def test_where_the_package_cannot_be_written_the_users_cache_serves(tmp_path: Path) -> None:
     (tmp_path / "__pycache__").write_text("not a folder: nobody, root neither, can write into it")
     cache = tmp_path / "cache"

@@ -17,7 +17,7 @@ SHOWN = 3
 
 
 @dataclass(frozen=True)
-class Group:
+class PlanningGroup:
     """A named group of joints: a chain between two links, or joints, links and other groups.
 
     Attributes:
@@ -80,7 +80,7 @@ class Srdf:
     """
 
     file: Path
-    groups: Mapping[str, Group]
+    groups: Mapping[str, PlanningGroup]
     end_effectors: tuple[EndEffector, ...]
     states: tuple[GroupState, ...]
     disabled: tuple[Disabled, ...]
@@ -159,14 +159,14 @@ class _Reader:
             self._file, groups, end_effectors, states, disabled, unchecked, enabled, remarks
         )
 
-    def _groups(self, names: list[str]) -> Iterator[Group]:
+    def _groups(self, names: list[str]) -> Iterator[PlanningGroup]:
         for element in self._root.findall("group"):
             chains: list[tuple[str, str]] = []
             for chain in element.findall("chain"):
                 ends = self._named(chain, ("base_link", "tip_link"))
                 if len(ends) == 2 and self._hangs(element, *ends):
                     chains.append((ends[0], ends[1]))
-            yield Group(
+            yield PlanningGroup(
                 element.get("name", ""),
                 self._lines[element],
                 tuple(chains),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from tamp.commands.robot_folder.arm import FEWEST, LARGEST, outwards
 from tamp.commands.robot_folder.description import MOVING, Description
 from tamp.commands.robot_folder.ends import SHOWN, End, ends
-from tamp.commands.robot_folder.srdf import Group, Srdf, links_above
+from tamp.commands.robot_folder.srdf import PlanningGroup, Srdf, links_above
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
 
@@ -27,7 +27,7 @@ class ArmGroup:
         hand: Name of the end effector that hangs on it; empty without one.
     """
 
-    group: Group
+    group: PlanningGroup
     base: str
     tip: str
     joints: tuple[str, ...]
@@ -143,7 +143,7 @@ def choose_fingers(
     return None, ""
 
 
-def joints_of(srdf: Srdf, description: Description, group: Group) -> frozenset[str]:
+def joints_of(srdf: Srdf, description: Description, group: PlanningGroup) -> frozenset[str]:
     """Collect the joints of a group: its own, those that move its links, those of its chains, and
     those of its groups.
     """

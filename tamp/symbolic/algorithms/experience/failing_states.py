@@ -29,40 +29,11 @@ def avoid_failing_states(
     """
     if not experience.failing_states:
         return instantiated
-    axioms: list[Axiom] = []
-    others: dict[CallKey, Facts] = {}
-    for number, (call, (predicates, states)) in enumerate(experience.failing_states.items()):
-        changing = sorted(
-            one for one in instantiated.reachable | instantiated.initial if one[0] in predicates
-        )
-        heads = [(OTHER_STATE, str(number), str(place)) for place in range(len(states))]
-        others[call] = frozenset(heads)
-        for head, state in zip(heads, states, strict=True):
-            axioms += [Axiom(head, NO_FACTS, frozenset((one,))) for one in sorted(state)]
-            axioms += [
-                Axiom(head, frozenset((one,)), NO_FACTS) for one in changing if one not in state
-            ]
-
-    needs: dict[Fact, Facts] = {}
-    for fact in dict.fromkeys(
-        fact
-        for instance in optimistic.instances
-        if instance.call in others
-        for fact in instance.certified
-    ):
-        producers = optimistic.alternatives.get(
-            fact, [optimistic.producers[fact]] if fact in optimistic.producers else []
-        )
-        if not producers or any(producer.call not in others for producer in producers):
-            continue  # known, or there is a call that has not failed in any state
-        if len(producers) == 1:
-            needs[fact] = others[producers[0].call]
-            continue
-        head = (OTHER_STATE, *fact)
-        needs[fact] = frozenset((head,))
-        axioms += [Axiom(head, others[producer.call], NO_FACTS) for producer in producers]
+    axioms, others = _other_states(instantiated, experience)
+    needs, combined = _needs(optimistic, others)
     if not needs:
         return instantiated
+    axioms += combined
 
     def asked(static: Facts) -> Facts:
         return frozenset(head for fact in static for head in needs.get(fact, NO_FACTS))
@@ -89,6 +60,54 @@ def avoid_failing_states(
     return replace(
         instantiated, operators=operators, axioms=stratify(axioms), goal=goal, reachable=reachable
     )
+
+
+def _other_states(
+    instantiated: InstantiatedTask, experience: Experience
+) -> tuple[list[Axiom], dict[CallKey, Facts]]:
+    """Derive for each call that it is in none of the states in which it failed."""
+    axioms: list[Axiom] = []
+    others: dict[CallKey, Facts] = {}
+    for number, (call, (predicates, states)) in enumerate(experience.failing_states.items()):
+        changing = sorted(
+            one for one in instantiated.reachable | instantiated.initial if one[0] in predicates
+        )
+        heads = [(OTHER_STATE, str(number), str(place)) for place in range(len(states))]
+        others[call] = frozenset(heads)
+
+        for head, state in zip(heads, states, strict=True):
+            axioms += [Axiom(head, NO_FACTS, frozenset((one,))) for one in sorted(state)]
+            axioms += [
+                Axiom(head, frozenset((one,)), NO_FACTS) for one in changing if one not in state
+            ]
+    return axioms, others
+
+
+def _needs(
+    optimistic: OptimisticFacts, others: dict[CallKey, Facts]
+) -> tuple[dict[Fact, Facts], list[Axiom]]:
+    """Find what each fact takes that rests on failed calls alone: another state for one of them."""
+    axioms: list[Axiom] = []
+    needs: dict[Fact, Facts] = {}
+    for fact in dict.fromkeys(
+        fact
+        for instance in optimistic.instances
+        if instance.call in others
+        for fact in instance.certified
+    ):
+        producers = optimistic.alternatives.get(
+            fact, [optimistic.producers[fact]] if fact in optimistic.producers else []
+        )
+        if not producers or any(producer.call not in others for producer in producers):
+            continue  # known, or there is a call that has not failed in any state
+        if len(producers) == 1:
+            needs[fact] = others[producers[0].call]
+            continue
+
+        head = (OTHER_STATE, *fact)
+        needs[fact] = frozenset((head,))
+        axioms += [Axiom(head, others[producer.call], NO_FACTS) for producer in producers]
+    return needs, axioms
 
 
 def choose_instances(
