@@ -20,6 +20,7 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.plan.open import open_plan
 from tamp.verification.verify import verify
+from tests.needs import INSTALLED
 
 
 def problem_for(name: str, size: str) -> str:
@@ -96,7 +97,7 @@ def test_it_solves_a_problem_that_is_judged_and_carried_out(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("engine", INSTALLED)
 def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     engine: str, tmp_path: Path
 ) -> None:
