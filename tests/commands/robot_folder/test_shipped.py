@@ -19,6 +19,7 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.plan.open import open_plan
+from tamp.simulation import engines
 from tamp.verification.verify import verify
 from tests.needs import INSTALLED
 
@@ -111,10 +112,15 @@ def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     assert execute(stored, ExecutionOptions(grasp="friction", engine=engine)).reached
 
 
-@pytest.mark.parametrize("name", ["panda_fixed", "two_pandas"])
+@pytest.mark.parametrize(
+    ("name", "engine"), [("panda_fixed", INSTALLED[0]), ("two_pandas", "mujoco")]
+)
 def test_a_robots_folder_is_checked_with_all_its_arms(
-    name: str, capsys: pytest.CaptureFixture[str]
+    name: str, engine: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(engines, "installed", lambda one: one == engine)
     assert main(["check", name]) == 0
     joints = " + ".join(["7"] * len(ROBOTS[name]().arms))
-    assert f"{name}: {joints} joints, fixed base, sound" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f"{name}: {joints} joints, fixed base, sound" in said
+    assert f"frames differ from {engine}'s by" in said
