@@ -7,8 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from tamp.simulation.engines import ENGINES, installed
+
 MESHES = Path(__file__).resolve().parent / "meshes"
 """A few of pybullet_data's files, with their licence."""
+
+INSTALLED = tuple(name for name in ENGINES if installed(name))
+"""The engines that can be asked here: what a test of both goes over."""
 
 NEEDS_PYBULLET = pytest.mark.skipif(
     importlib.util.find_spec("pybullet") is None,

@@ -90,7 +90,7 @@ class Make:
 
 @dataclass(frozen=True)
 class Check:
-    """Check a robot's folder: its files, home, inverse kinematics, and frames against pybullet's.
+    """Check a robot's folder: its files, home, inverse kinematics, and frames against an engine's.
 
     Exit status: 0 sound, 2 not.
     """
@@ -141,12 +141,14 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
     from tamp.commands.robot_folder.make import make
     from tamp.commands.robot_folder.write import write_folder
     from tamp.geometric.loading.robot_folder import read_robot
+    from tamp.simulation.engines import default_engine
 
     made = make(wanted, lambda what, share: shown.news(f"{what} ({share:.0%})"))
     srdf = None if wanted.srdf is None else str(wanted.srdf.file)
     write_folder(wanted.out, made.robot, made.covers, made.table, made.masses, options.urdf, srdf)
     robot = read_robot(wanted.out)
-    shown.news("checks against pybullet")
+    engine = default_engine()
+    shown.news(f"checks against {engine}")
     physics = against_physics(robot)
     check_home(robot)
     share = solved(robot)
@@ -157,7 +159,7 @@ def _made(wanted: Wanted, options: Make, shown: Progress) -> list[str]:
         f"{robot.name}, {len(robot.joints)} joints: {kinds}",
         f"{hulls} convex parts, {pairs} pairs of links are checked, home {_numbers(robot.home)}",
         *made.warnings,
-        f"frames differ from pinocchio's by {made.off:.1g}, from pybullet's by {physics:.1g}",
+        f"frames differ from pinocchio's by {made.off:.1g}, from {engine}'s by {physics:.1g}",
         f"inverse kinematics finds {share:.1%} of reachable poses",
     ]
 
@@ -242,6 +244,7 @@ def _check(name: str) -> None:
     from tamp.geometric.loading.robots import find_robot, load_robot
     from tamp.geometric.robot.reachability import Reachability
     from tamp.geometric.robot.spheres import link_covers
+    from tamp.simulation.engines import default_engine
 
     robot = load_robot(find_robot(name))
     if robot.drive != "fixed" or not robot.beside:  # else no table is asked where to stand
@@ -256,7 +259,8 @@ def _check(name: str) -> None:
                          file=robot.folder)  # fmt: skip
     joints = " + ".join(str(len(arm.joints)) for arm in robot.arms)
     say(f"{robot.name}: {joints} joints, {robot.drive} base, sound")
-    say(f"  frames differ from pybullet's by {off:.1g}; inverse kinematics finds {share:.1%}")
+    engine = default_engine()
+    say(f"  frames differ from {engine}'s by {off:.1g}; inverse kinematics finds {share:.1%}")
 
 
 def _numbers(values: Sequence[float]) -> str:

@@ -1,1 +1,1 @@
-"""Judge plan files independently: own semantics, pybullet's kinematics and collision detection."""
+"""Judge plan files independently: own semantics, an engine's kinematics and collisions."""

@@ -1,4 +1,4 @@
-"""Replay a plan step by step: facts by PDDL's semantics, geometry by pybullet, the two compared."""
+"""Replay a plan step by step: facts by PDDL, geometry by an engine, the two compared."""
 
 from __future__ import annotations
 

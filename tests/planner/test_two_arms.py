@@ -18,11 +18,9 @@ from tamp.geometric.robot.states import arm_of
 from tamp.geometric.values import Grasp, Reach
 from tamp.plan.open import open_plan
 from tamp.plan.write import plan_text
-from tamp.simulation.engines import installed
 from tamp.system.files import find_domain
 from tamp.verification.verify import verify
-
-ENGINES = [name for name in ("pybullet", "mujoco") if installed(name)]
+from tests.needs import INSTALLED
 
 
 def planned(problem: str, seed: int = 0, **more: Any) -> tamp.Solution:
@@ -67,7 +65,7 @@ def test_no_arm_can_do_it_alone(alone: Path) -> None:
     assert not solution.solved
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", INSTALLED)
 def test_a_body_is_put_down_by_one_arm_and_taken_by_the_other(engine: str, alone: Path) -> None:
     solution = planned("two_arms_tables", domain=alone)
     taken = [(a.name, a.objects[0]) for a in solution.plan if a.objects[1] == "soup_can"]
@@ -154,7 +152,7 @@ def test_a_body_has_no_arms_name(tmp_path: Path) -> None:
         tamp.load_problem(tmp_path / "p.yaml")
 
 
-@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("engine", INSTALLED)
 def test_a_handover_is_carried_out(engine: str, handed: dict[str, Any], tmp_path: Path) -> None:
     plan = tmp_path / "plan.json"
     plan.write_text(json.dumps(handed))

@@ -14,7 +14,8 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.pose import Pose, pose_difference
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
 from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation, contact_pair
-from tamp.simulation.engines import ENGINES, installed, open_actuated
+from tamp.simulation.engines import open_actuated
+from tests.needs import INSTALLED
 
 ROBOT = ROBOTS["panda_mobile"]()
 HELD = Body("held", (Part(Box((0.05, 0.04, 0.06))),), Pose(), True, mass=0.3)
@@ -27,7 +28,7 @@ SCENE = Scene(
 )
 
 
-@pytest.fixture(params=[name for name in ENGINES if installed(name)])
+@pytest.fixture(params=INSTALLED)
 def world(request: pytest.FixtureRequest) -> Iterator[MotorSimulation]:
     with open_actuated(SCENE, ROBOT, name=request.param) as made:
         made.set_pose("held", made.tool())
@@ -103,7 +104,7 @@ def turned(world: MotorSimulation, angle: float, seconds: float) -> None:
         world.step_motors([0.0, 0.0, rate, *[0.0] * 7])
 
 
-@pytest.fixture(params=[name for name in ENGINES if installed(name)])
+@pytest.fixture(params=INSTALLED)
 def off_centre(request: pytest.FixtureRequest) -> Iterator[MotorSimulation]:
     bar = Body("bar", (Part(Box((0.2, 0.07, 0.04))),), Pose((0.0, 2.0, 0.5)), True, mass=0.3)
     with open_actuated(replace(SCENE, bodies={"bar": bar}), ROBOT, name=request.param) as made:

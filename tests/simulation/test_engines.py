@@ -17,16 +17,14 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, RobotStart, Room, Scene
 from tamp.simulation import engines
 from tamp.simulation.engines import (
-    ENGINES,
     default_engine,
     engine,
-    installed,
     open_actuated,
     open_world,
 )
 from tamp.simulation.shapes import centre_of_mass, inertia
+from tests.needs import INSTALLED
 
-INSTALLED = [name for name in ENGINES if installed(name)]
 START = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 ROOM = Room((-3, 3), (-3, 3))
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.engine_creep import HELD, creep, held
-from tamp.simulation.engines import ENGINES, installed
+from tests.needs import INSTALLED
 
 
 @pytest.mark.parametrize("body", HELD)
-@pytest.mark.parametrize("name", [name for name in ENGINES if installed(name)])
+@pytest.mark.parametrize("name", INSTALLED)
 def test_what_is_held_stays_in_the_hand(name: str, body: str) -> None:
     """With 120 iterations of pybullet's solver the bottle went 0.6 mm in this time, the mug 5 mm."""
     moved, turned = creep(name, held(body), 20.0)

@@ -14,7 +14,7 @@ from benchmarks.engine_verdicts import SPOIL
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
-from tamp.simulation.engines import ENGINES, installed, open_world
+from tamp.simulation.engines import open_world
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
 from tamp.verification import collision_sweep
@@ -24,8 +24,8 @@ from tamp.verification.link_frames import LinkFrames
 from tamp.verification.report import Report
 from tamp.verification.trajectory_sampling import SampledMotion
 from tamp.verification.verify import verify
+from tests.needs import INSTALLED
 
-INSTALLED = [name for name in ENGINES if installed(name)]
 SPOILT = 10
 
 

@@ -13,6 +13,7 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.simulation.engines import open_world
 from tamp.verification.holding import why_not_held
+from tests.needs import INSTALLED
 
 SCENE = """
 name: cup
@@ -54,11 +55,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("engine", INSTALLED)
 @pytest.mark.parametrize("case", CASES)
 def test_a_cup_holds_what_closes_it(case: str, engine: str, tmp_path: Path) -> None:
-    if engine == "pybullet":
-        pytest.importorskip("pybullet")
     file = tmp_path / "cup.yaml"
     file.write_text(SCENE, encoding="utf-8")
     scene, robot = load_scene(file).scene, ROBOTS["ur5_suction"]()

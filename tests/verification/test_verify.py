@@ -13,15 +13,15 @@ import pytest
 
 from tamp.commands.verify import main
 from tamp.plan.violation import KINDS
-from tamp.simulation.engines import ENGINES, installed
 from tamp.verification.replay import LOOKS_BEYOND, MAX_STATES_AT_FIRST
 from tamp.verification.tolerances import tolerances
 from tamp.verification.verify import verify
+from tests.needs import INSTALLED
 
 Plan = dict[str, Any]
 
 
-@pytest.fixture(autouse=True, params=[name for name in ENGINES if installed(name)])
+@pytest.fixture(autouse=True, params=INSTALLED)
 def engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """Each test asks each engine."""
     monkeypatch.setattr("tamp.simulation.engines.default_engine", lambda: request.param)

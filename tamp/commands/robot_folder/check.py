@@ -22,7 +22,7 @@ from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
-from tamp.simulation.engines import open_world
+from tamp.simulation.engines import default_engine, open_world
 from tamp.simulation.silence import silence
 
 STATES = 100
@@ -33,7 +33,7 @@ OFF = 5e-4
 are made exact,"""
 
 SAME = 2e-4
-"""and from pybullet's."""
+"""and from a physics engine's."""
 
 POSES = 500
 """Reachable poses for which inverse kinematics is asked."""
@@ -109,8 +109,8 @@ def _tip(robot: Robot, arm: Arm, q: Array) -> Array:
 
 
 def against_physics(robot: Robot) -> float:
-    """Compare all links' frames with pybullet's reading of the folder's URDF; return the largest
-    difference.
+    """Compare all links' frames with the default engine's reading of the folder's URDF; return the
+    largest difference.
 
     Raises:
         InputError: They differ.
@@ -130,7 +130,8 @@ def against_physics(robot: Robot) -> float:
             for name, T in world.link_poses().items():
                 worst = max(worst, float(np.abs(T - ours[name]).max()))
     if worst > SAME:
-        raise InputError(f"our kinematics differ by {worst:.2g} from pybullet's", file=robot.folder)
+        engine = default_engine()
+        raise InputError(f"our kinematics differ by {worst:.2g} from {engine}'s", file=robot.folder)
     return worst
 
 

@@ -85,6 +85,11 @@ def find_urdf(name: str) -> Path:
         if robots:
             raise InputError(f"no file and no robot of example-robot-data '{name}'", found=name,
                              choices=tuple(sorted(robots)))  # fmt: skip
+    if name.startswith("pybullet_data/") and spec is None:
+        raise InputError(
+            f"no such file: {name}; pybullet_data is not installed",
+            remedy="It comes with pybullet, which has wheels for Python 3.11; name another URDF",
+        )
     raise InputError(
         f"no such file: {name}",
         remedy="Name a URDF or an MJCF, or install example-robot-data and name one of its robots",

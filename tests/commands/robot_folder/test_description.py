@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tamp.commands.robot_folder.description import read_description
+from tamp.commands.robot_folder.description import find_urdf, read_description
 from tamp.commands.robot_folder.home import home
 from tamp.commands.robot_folder.self_collision import home_collision
+from tamp.errors import InputError
 from tamp.geometric.loading.robot_folder import read_robot
 from tamp.geometric.robot.kinematics import Kinematics
 from tests.commands.robot_folder.urdf import arm_text
@@ -56,3 +58,12 @@ def _tilted(quaternion: tuple[float, float, float, float]) -> tuple[float, float
     return (
         Pose((0.0, 0.0, 0.0), quaternion) @ Pose.from_xyz_rpy((0, 0, 0), (0.009, 0.009, 0.0))
     ).quaternion
+
+
+def test_where_pybullet_is_missing_its_files_are_named_as_what_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "pybullet_data", None)
+    with pytest.raises(InputError, match="pybullet_data is not installed") as said:
+        find_urdf("pybullet_data/kuka_iiwa/model.urdf")
+    assert "Python 3.11" in said.value.remedy

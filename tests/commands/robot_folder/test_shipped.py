@@ -19,7 +19,9 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.plan.open import open_plan
+from tamp.simulation import engines
 from tamp.verification.verify import verify
+from tests.needs import INSTALLED
 
 
 def problem_for(name: str, size: str) -> str:
@@ -98,7 +100,7 @@ def test_it_solves_a_problem_that_is_judged_and_carried_out(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("engine", ["pybullet", "mujoco"])
+@pytest.mark.parametrize("engine", INSTALLED)
 def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     engine: str, tmp_path: Path
 ) -> None:
@@ -113,15 +115,22 @@ def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
 
 
 @pytest.mark.parametrize(
-    ("name", "what"),
+    ("name", "what", "engine"),
     [
-        ("panda_fixed", "7 joints, fixed base"),
-        ("two_pandas", "7 + 7 joints, fixed base"),
-        ("two_ur5", "6 + 6 joints, omnidirectional base"),
+        ("panda_fixed", "7 joints, fixed base", INSTALLED[0]),
+        ("two_pandas", "7 + 7 joints, fixed base", "mujoco"),
+        ("two_ur5", "6 + 6 joints, omnidirectional base", INSTALLED[0]),
     ],
 )
 def test_a_robots_folder_is_checked_with_all_its_arms(
-    name: str, what: str, capsys: pytest.CaptureFixture[str]
+    name: str,
+    what: str,
+    engine: str,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setattr(engines, "installed", lambda one: one == engine)
     assert main(["check", name]) == 0
-    assert f"{name}: {what}, sound" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f"{name}: {what}, sound" in said
+    assert f"frames differ from {engine}'s by" in said

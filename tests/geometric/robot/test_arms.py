@@ -22,8 +22,9 @@ from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.robot.states import arm_of, columns, rest_row, with_arm
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part, RobotStart, Room, Scene
-from tamp.simulation.engines import installed, open_world
+from tamp.simulation.engines import open_world
 from tamp.verification.collision_sweep import CollisionFindings, Sweeper
+from tests.needs import INSTALLED
 
 TWO = ROBOTS["two_pandas"]()
 SCENE = Scene("s", {}, RobotStart("two_pandas", (0.0, 0.0, 0.0)), Room((-3, 3), (-3, 3)))
@@ -94,7 +95,7 @@ def test_arms_meet_and_only_where_the_other_stands(into_the_right: tuple[float, 
     assert free == [False, True]
 
 
-@pytest.mark.parametrize("engine", [name for name in ("pybullet", "mujoco") if installed(name)])
+@pytest.mark.parametrize("engine", INSTALLED)
 def test_the_judge_sees_arms_meet(engine: str, into_the_right: tuple[float, ...]) -> None:
     row = with_arm(TWO, rest_row(TWO), 0, into_the_right, None)
     with open_world(SCENE, TWO, name=engine) as world:
