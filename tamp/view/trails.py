@@ -1,4 +1,4 @@
-"""Trails: the paths of the hand and the base, drawn as lines that grow with time."""
+"""Trails in pictures: the paths of the hand and the base, drawn as lines that grow with time."""
 
 from __future__ import annotations
 
