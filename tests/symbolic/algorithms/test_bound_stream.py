@@ -115,8 +115,9 @@ def test_a_function_is_shown_values_and_the_state_sorted() -> None:
         return True
 
     streams = run(look=look)
-    streams.draw(streams.instance("look", ("b",), frozenset({("at", "b"), ("at", "a")})))
-    assert shown == [("B", [("at", "A"), ("at", "B")])]
+    state = frozenset(("at", name) for name in "hgfedcba")
+    streams.draw(streams.instance("look", ("b",), state))
+    assert shown == [("B", [("at", name) for name in "ABcdefgh"])]
 
 
 # ---------------------------------------------------------------- tests, several outputs
@@ -132,13 +133,20 @@ def test_a_function_is_shown_values_and_the_state_sorted() -> None:
     ],
 )
 def test_a_test_is_asked_once(answer: Any, names: Any, reason: str | None) -> None:
-    streams = run(test=lambda body, call: answer)
+    asked: list[str] = []
+
+    def test(body: str, call: Call) -> Any:
+        asked.append(body)
+        return answer
+
+    streams = run(test=test)
     instance = streams.instance("test", ("a",))
     assert streams.draw(instance) == names
     assert instance.exhausted
     assert streams.certain == ({("fine", "a")} if names is not None else set())
     assert (instance.last and instance.last.reason) == reason
     assert streams.false_tests() == ([] if names is not None else [instance])
+    assert streams.draw(instance) is None and asked == ["A"]
 
 
 def test_what_a_state_shows_is_certain_in_no_other() -> None:
