@@ -23,7 +23,7 @@ from grounding.supports import FurnitureSupport
 from tamp.errors import InputError
 from tamp.system import guard
 from tamp.system.files import write_whole
-from tamp.system.outputs import UNFINISHED
+from tamp.system.outputs import UNFINISHED_NAME
 
 CHUNK = 100
 """Scenes that one process makes before they are kept."""
@@ -157,7 +157,7 @@ def _claim(parts: Path, name: str) -> None:
     if (
         parts.is_dir()
         and not mark.is_file()
-        and any(UNFINISHED.match(one.name) is None for one in parts.iterdir())
+        and any(UNFINISHED_NAME.match(one.name) is None for one in parts.iterdir())
     ):
         what = "this folder is in the way, and tamp-learn has not made it"
         raise InputError(what, file=parts, remedy="Move it, or choose another --out")

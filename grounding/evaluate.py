@@ -15,7 +15,7 @@ import numpy as np
 from grounding.dataset import Dataset, Example
 from grounding.model import RelationModel
 from grounding.oracles import NEAR, ItemOf, Verdict, drop_verdicts, paper_verdicts
-from grounding.paper.blind import blind_ceiling
+from grounding.paper.blind_ceiling import blind_ceiling
 from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
 from tamp.simulation.engines import open_drops
 

@@ -25,7 +25,7 @@ from benchmarks.relations.geometry import (
     separation,
 )
 from benchmarks.relations.relations import RELATIONS
-from grounding.relations.chance import FACES
+from grounding.relations.null_hypothesis import FACES
 
 
 def scenes(name: str, n: int, rng: Random, test: bool = False, lazy: str = "") -> Batch:

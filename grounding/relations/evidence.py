@@ -10,7 +10,7 @@ from numpy.random import Generator as Random
 from numpy.typing import NDArray
 
 from grounding.relations.catalogue import Measure, catalogue, measure
-from grounding.relations.chance import chance
+from grounding.relations.null_hypothesis import chance
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
 

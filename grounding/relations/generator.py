@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from grounding.relations.carrying import carry, trouble
 from grounding.relations.catalogue import measure
-from grounding.relations.chance import about_z, chance, drop, floor_of, highest
 from grounding.relations.charts import Carried, agreement, carried, charts
 from grounding.relations.committee import Committee
+from grounding.relations.null_hypothesis import about_z, chance, drop, floor_of, highest
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
 

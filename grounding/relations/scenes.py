@@ -15,7 +15,6 @@ from numpy.random import Generator as Random
 
 from grounding.body_geometry import geometry_of
 from grounding.relation_scene import Placed
-from grounding.relations.chance import FACES, about_z
 from grounding.relations.demonstration_file import Demonstration, Label
 from grounding.relations.demonstration_text import (
     BodyEntry,
@@ -23,6 +22,7 @@ from grounding.relations.demonstration_text import (
     demonstration_text,
     read_entries,
 )
+from grounding.relations.null_hypothesis import FACES, about_z
 from grounding.relations.situation import support_of
 from grounding.separation import Obstacles, separations
 from tamp.errors import InputError

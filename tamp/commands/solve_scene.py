@@ -24,8 +24,8 @@ from tamp.symbolic.algorithms.result import Outcome
 from tamp.system import guard
 from tamp.system.outputs import check_outputs
 from tamp.system.progress import Progress, say
+from tamp.view.external_meshes import check_inside
 from tamp.view.outputs import OutputRequest, check_page, write_outputs
-from tamp.view.outside import check_inside
 
 
 def solve_scene(request: Request) -> bool | None:

@@ -81,8 +81,8 @@ def _view(options: View) -> None:
         browser=not options.no_browser,
     )
     request.check()
+    from tamp.view.external_meshes import check_inside
     from tamp.view.open import open_timeline
-    from tamp.view.outside import check_inside
 
     def check(files: Sequence[Path], meshes: Sequence[Path]) -> None:
         check_outputs(request.outputs, (*files, *meshes))

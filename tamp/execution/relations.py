@@ -19,7 +19,7 @@ from tamp.plan.sources import source_file
 from tamp.relations.observed import ClassifierAnswers, moved, observe
 from tamp.symbolic.pddl.complement import atoms_of_conditions
 from tamp.symbolic.pddl.relations import (
-    SAMPLE,
+    SAMPLE_PREFIX,
     Relation,
     needed_false,
     relation_names,
@@ -170,7 +170,9 @@ def named_classifiers(
 
 def _own_names(stored: PlanBundle, streams: StreamFile, classifiers: Named) -> Iterable[str]:
     planned: dict[str, str] = stored.document.get("options", {}).get("samplers", {})
-    sampled = [stream.name.removeprefix(SAMPLE) for stream in streams.streams if stream.outputs]
+    sampled = [
+        stream.name.removeprefix(SAMPLE_PREFIX) for stream in streams.streams if stream.outputs
+    ]
     named = {*planned, *classifiers, *sampled}
     return [
         name

@@ -50,7 +50,7 @@ class Context:
             "differential": turning on the spot and straight ahead.
         holding: What is in the hand at the start; the scene has that body where it was before.
         planner: Which sampling-based planner moves arm and base, one of `planners.PLANNERS`.
-        heights: How high the hand reaches, metres, at the places where `streams.heights` measured
+        heights: How high the hand reaches, metres, where `streams.reachable_height` measured
             it.
         solver: Inverse kinematics of the arm, where another context has it.
         footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which

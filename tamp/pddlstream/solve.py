@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, cast
 
 from tamp.errors import InputError
 from tamp.pddlstream.problem import PDDLProblem, bind
-from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.bound_stream import FOREIGN_CALLERS
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.algorithms.incremental import plan_incrementally, start_incremental
 from tamp.symbolic.algorithms.registry import ALGORITHMS
@@ -103,7 +103,7 @@ def solve(
     load_compiled_loops()  # before the clock starts
     deadline = Deadline(max_time)
     try:
-        result = Interrupter(deadline, strangers=STRANGERS).run(
+        result = Interrupter(deadline, strangers=FOREIGN_CALLERS).run(
             lambda: _run(task, algorithm, seed, deadline)
         )
     except (OutOfTime, KeyboardInterrupt) as end:

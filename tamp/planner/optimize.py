@@ -20,7 +20,7 @@ from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Improvement, Solution
 from tamp.planner.timed_trajectories import TimingCache
 from tamp.symbolic.algorithms.anytime import solve_anytime
-from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.bound_stream import FOREIGN_CALLERS
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Interrupter
@@ -102,7 +102,7 @@ def optimize(
 
     outcome = Outcome.TIMEOUT
     try:
-        result = Interrupter(deadline, strangers=STRANGERS).run(plan)
+        result = Interrupter(deadline, strangers=FOREIGN_CALLERS).run(plan)
         if not best:
             seconds = {"total": deadline.elapsed(), "timing": 0.0}
             return build_solution(problem, result, (), seed, "adaptive", seconds, recorder)

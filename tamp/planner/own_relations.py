@@ -17,7 +17,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY, Classifier
 from tamp.geometric.streams.user_relations import fails_relation
-from tamp.planner.served import Served
+from tamp.planner.relation_samplers import Served
 from tamp.relations.observed import ClassifierAnswers, moved, observe, refuse_silent
 from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream

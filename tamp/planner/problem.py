@@ -22,9 +22,9 @@ from tamp.geometric.stability.hulls import prepare
 from tamp.geometric.values import Grasp
 from tamp.planner.own_relations import decided
 from tamp.planner.problem_files import ProblemFiles, parse_task, read_files
-from tamp.planner.rested_on import saying_where_poses_rest
-from tamp.planner.served import Served
+from tamp.planner.relation_samplers import Served
 from tamp.planner.stream_binding import bind, bind_costs, unused_functions
+from tamp.planner.stream_completion import saying_where_poses_rest
 from tamp.planner.wanted_relations import unasked_streams
 from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.lint import lint

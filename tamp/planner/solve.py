@@ -18,7 +18,7 @@ from tamp.planner.contradictions import contradictions
 from tamp.planner.problem import Problem
 from tamp.planner.recorder import Recorder
 from tamp.planner.solution import Action, Solution
-from tamp.symbolic.algorithms.bound_stream import STRANGERS
+from tamp.symbolic.algorithms.bound_stream import FOREIGN_CALLERS
 from tamp.symbolic.algorithms.registry import ALGORITHMS
 from tamp.symbolic.algorithms.result import Outcome, Progress, Result, SearchStatistics, StreamTask
 from tamp.system.deadline import Deadline, OutOfTime
@@ -67,7 +67,7 @@ def solve(
         return result, with_trajectories(problem, result), planned
 
     try:
-        result, actions, planned = Interrupter(deadline, strangers=STRANGERS).run(plan)
+        result, actions, planned = Interrupter(deadline, strangers=FOREIGN_CALLERS).run(plan)
     except (OutOfTime, KeyboardInterrupt) as end:
         # Before the first round, or while a bound plan was being timed.
         outcome = Outcome.TIMEOUT if isinstance(end, OutOfTime) else Outcome.INTERRUPTED

@@ -14,7 +14,7 @@ from tamp.stream import StreamKind
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.costs import BoundFunction
 from tamp.symbolic.pddl.parser import output_types
-from tamp.symbolic.pddl.relations import SAMPLE
+from tamp.symbolic.pddl.relations import SAMPLE_PREFIX
 from tamp.symbolic.pddl.structs import Domain, Stream, StreamFile
 
 
@@ -48,7 +48,7 @@ def bind(
         types = output_types(stream, domain)
         outputs = tuple(types[name] for name in stream.outputs)
         function = partial(available[stream.name], context)
-        advises = stream.name.startswith(SAMPLE)
+        advises = stream.name.startswith(SAMPLE_PREFIX)
         bound.append(BoundStream(stream, function, outputs, advises, _kind(stream)))
 
     _refuse_decided(declared)
@@ -82,7 +82,7 @@ def _kind(stream: Stream) -> StreamKind:
         return STREAMS[stream.name].kind
     if not stream.outputs:
         return StreamKind.TESTS
-    if stream.name.startswith(SAMPLE):
+    if stream.name.startswith(SAMPLE_PREFIX):
         return StreamKind.PLACEMENTS
     return StreamKind.MOTION if stream.fluents else StreamKind.OTHER
 

@@ -36,7 +36,7 @@ from tamp.system.quick_typing import (
 INNER_KERNEL = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 """Options of functions that only compiled code calls: they are kept with those that call them."""
 
-NOWHERE = (
+CANNOT_KEEP = (
     "compiled kernels cannot be kept: {why}. They are compiled anew in each run; "
     "NUMBA_CACHE_DIR names a folder"
 )
@@ -119,4 +119,4 @@ def njit(
 def _say(why: str) -> None:
     if not _COMPILING.said:
         _COMPILING.said = True
-        warnings.warn(NOWHERE.format(why=why), RuntimeWarning, stacklevel=2)
+        warnings.warn(CANNOT_KEEP.format(why=why), RuntimeWarning, stacklevel=2)

@@ -6,10 +6,10 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SELDOM = 50_000
+SELDOM_CONTAINERS = 50_000
 """New containers between two looks; Python's own 700 cost planning a tenth of its time and more."""
 
-HARDLY_EVER = 200_000
+HARDLY_EVER_CONTAINERS = 200_000
 """The same for a command: more than it makes until it plans."""
 
 
@@ -19,7 +19,7 @@ def infrequent_collection() -> Iterator[None]:
     (tests/test_memory.py).
     """
     before = gc.get_threshold()
-    _raise_threshold(SELDOM)
+    _raise_threshold(SELDOM_CONTAINERS)
     try:
         yield
     finally:
@@ -30,7 +30,7 @@ def collect_hardly_ever() -> None:
     """Collect garbage hardly ever from now on, for a process that is a command's own: a look goes
     through all that was imported since the one before, a tenth of the time to a first plan.
     """
-    _raise_threshold(HARDLY_EVER)
+    _raise_threshold(HARDLY_EVER_CONTAINERS)
 
 
 def _raise_threshold(containers: int) -> None:

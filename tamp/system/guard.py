@@ -21,10 +21,10 @@ from tamp.system.garbage import collect_hardly_ever
 from tamp.system.process_exit import exit_now
 from tamp.system.process_family import adopt_orphans, die_with, end_orphans, seconds_waited
 
-ENDING = (signal.SIGINT, signal.SIGTERM)
+ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 """What ends a command, with 128 and the signal's number as its exit code."""
 
-WATCHED = (*ENDING, signal.SIGCHLD)
+WATCHED_SIGNALS = (*ENDING_SIGNALS, signal.SIGCHLD)
 """What who watches waits for."""
 
 END_TIMEOUT_S = 0.8
@@ -32,7 +32,7 @@ END_TIMEOUT_S = 0.8
 for a core.
 """
 
-PATIENCE_AT_MOST = 8.0
+MAX_PATIENCE_S = 8.0
 """The same, counted by the wall's clock: more than that no load excuses."""
 
 
@@ -40,7 +40,7 @@ class _Asked:
     """The signals that this process was sent.
 
     Attributes:
-        number: The first signal of ENDING that came; 0 for none.
+        number: The first signal of ENDING_SIGNALS that came; 0 for none.
         at_once: Whether there is nothing to put in order: the process leaves inside the handler.
         guarded: Whether `hear` is installed.
     """
@@ -103,7 +103,7 @@ def listen() -> None:
     took the signals.
     """
     if _ASKED.guarded:
-        for number in ENDING:
+        for number in ENDING_SIGNALS:
             signal.signal(number, hear)
 
 
@@ -115,7 +115,7 @@ def obey_only_parent() -> None:
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING_SIGNALS)
     _ASKED.guarded = False
     leader = multiprocessing.parent_process()
     if leader is not None and leader.pid is not None:
@@ -128,7 +128,7 @@ class HeldSignals:
     """
 
     def __enter__(self) -> None:
-        self._before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        self._before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING_SIGNALS)
 
     def __exit__(self, *error: object) -> None:
         signal.pthread_sigmask(signal.SIG_SETMASK, self._before)
@@ -140,7 +140,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
 
     The exit code is the function's, that of its SystemExit, or 130 or 143 where a signal ended it.
     """
-    signal.pthread_sigmask(signal.SIG_BLOCK, WATCHED)
+    signal.pthread_sigmask(signal.SIG_BLOCK, WATCHED_SIGNALS)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     parent = os.getpid()
     # before there is anybody who may end first and leave somebody behind
@@ -155,7 +155,7 @@ def guarded(module: str, function: str = "main") -> NoReturn:
 
     _ASKED.guarded = _ASKED.at_once = True
     listen()
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, WATCHED)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, WATCHED_SIGNALS)
     sys.unraisablehook = _unraisable
 
     if os.getpid() != parent:
@@ -217,24 +217,21 @@ def _watch(child: int) -> NoReturn:
         if found:
             break
 
-        came = signal.sigtimedwait(WATCHED, 0.05 if number else 3600.0)
-        if came is not None and came.si_signo in ENDING and not number:
+        came = signal.sigtimedwait(WATCHED_SIGNALS, 0.05 if number else 3600.0)
+        if came is not None and came.si_signo in ENDING_SIGNALS and not number:
             number, since, waited = came.si_signo, time.monotonic(), seconds_waited(child)
             os.kill(child, number)
 
         if number and not killed:
             passed = time.monotonic() - since
-            if (
-                passed > PATIENCE_AT_MOST
-                or passed - (seconds_waited(child) - waited) > END_TIMEOUT_S
-            ):
+            if passed > MAX_PATIENCE_S or passed - (seconds_waited(child) - waited) > END_TIMEOUT_S:
                 os.kill(child, signal.SIGKILL)
                 killed = True
                 _say_interrupted()
 
     # a terminal asks both at once, and the one who works may have left before this one looked
     if not number:
-        came = signal.sigtimedwait(ENDING, 0.0)
+        came = signal.sigtimedwait(ENDING_SIGNALS, 0.0)
         number = came.si_signo if came is not None else 0
 
     if number:

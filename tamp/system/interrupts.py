@@ -23,7 +23,7 @@ Result = TypeVar("Result")
 GRACE_S = 0.1
 """Seconds after the deadline at which whatever still runs is interrupted."""
 
-SOONEST = 1e-4
+SHORTEST_TIMER_S = 1e-4
 """The least that a timer is set to, seconds: none at all would never ring."""
 
 REPEAT_S = 0.25
@@ -99,7 +99,7 @@ class Interrupter:
         timed = self._deadline.seconds < threading.TIMEOUT_MAX
         ends = [
             number
-            for number in guard.ENDING
+            for number in guard.ENDING_SIGNALS
             if signal.getsignal(number) is guard.hear
             or (number == signal.SIGINT and signal.getsignal(number) is signal.default_int_handler)
         ]  # not those that an outer alarm hears, nor those of the user
@@ -129,8 +129,8 @@ class Interrupter:
                 sys.settrace(None)
             if left > 0.0:
                 left -= counted() - began
-                signal.setitimer(signal.ITIMER_REAL, max(left, SOONEST), interval)
-                if left <= SOONEST:  # the next alarm may begin before the timer rings
+                signal.setitimer(signal.ITIMER_REAL, max(left, SHORTEST_TIMER_S), interval)
+                if left <= SHORTEST_TIMER_S:  # the next alarm may begin before the timer rings
                     signal.raise_signal(signal.SIGALRM)
             if self._late:  # a signal came between the lines of this function
                 self._late = False
@@ -149,7 +149,9 @@ class Interrupter:
     def _set(self) -> None:
         """Set the timer of the interruption."""
         signal.setitimer(
-            signal.ITIMER_REAL, self._deadline.left() + max(self._grace, SOONEST), self._again
+            signal.ITIMER_REAL,
+            self._deadline.left() + max(self._grace, SHORTEST_TIMER_S),
+            self._again,
         )
 
     def _is_inside(self, frame: FrameType | None) -> bool:

@@ -18,7 +18,7 @@ from tamp.errors import InputError
 
 Array = NDArray[np.float64]
 
-LARGEST = 1e12
+LARGEST_NUMBER = 1e12
 """Of a number in a file: metres, radians, seconds, costs and counts are all below."""
 
 
@@ -95,7 +95,7 @@ class Field:
             number = math.inf
         if not math.isfinite(number):
             raise self.wrong("a finite number is expected")
-        if abs(number) > LARGEST:
+        if abs(number) > LARGEST_NUMBER:
             raise self.wrong(f"{number:g} is larger than anything that is counted or measured here")
         if number < least:
             raise self.wrong(f"{number:g} is less than {least:g}")
@@ -107,7 +107,7 @@ class Field:
             type(item) in (float, int) for item in self.value
         )
         array = np.array(self.value, dtype=float) if plain else np.array([math.nan])
-        if not (np.abs(array) <= LARGEST).all():
+        if not (np.abs(array) <= LARGEST_NUMBER).all():
             # which says where
             array = np.array([item.number() for item in self.items()], dtype=float)
         if size is not None and len(array) != size:

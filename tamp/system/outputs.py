@@ -17,7 +17,7 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.system.reading import is_file
 
-STANDARD = {
+STANDARD_STREAMS = {
     "/dev/stdout": 1,
     "/dev/fd/1": 1,
     "/proc/self/fd/1": 1,
@@ -26,17 +26,17 @@ STANDARD = {
 }
 """Names of what a process has open already: there, text is added to what was printed."""
 
-UNFINISHED = re.compile(r"^\.tamp-[0-9a-f]{32}\.unfinished$")
+UNFINISHED_NAME = re.compile(r"^\.tamp-[0-9a-f]{32}\.unfinished$")
 """Names of files that are being written. Their writer holds a lock on them; without one, it has
 been killed.
 """
 
-TEXTURES = re.compile(
+TEXTURE_PATTERN = re.compile(
     rb"^\s*(?:mtllib|map_\w+|bump|disp|decal|norm)\s+(?:-\S+\s+)*(\S.*?)\s*$", re.MULTILINE
 )
 """In an OBJ or MTL file: further files that belong to it."""
 
-NAMED = re.compile(rb'(?:filename|"uri")\s*[=:]\s*"([^"]{1,500})"')
+FILE_PATTERN = re.compile(rb'(?:filename|"uri")\s*[=:]\s*"([^"]{1,500})"')
 """In a URDF or glTF file: likewise."""
 
 MOST_SEARCHED = 20_000_000
@@ -179,7 +179,11 @@ def _companions(file: Path) -> Iterator[Path]:
     """
     kind = file.suffix.lower()
     pattern = (
-        TEXTURES if kind in (".obj", ".mtl") else NAMED if kind in (".urdf", ".gltf") else None
+        TEXTURE_PATTERN
+        if kind in (".obj", ".mtl")
+        else FILE_PATTERN
+        if kind in (".urdf", ".gltf")
+        else None
     )
     if pattern is None or not is_file(file) or file.stat().st_size > MOST_SEARCHED:
         return
@@ -192,7 +196,7 @@ def _companions(file: Path) -> Iterator[Path]:
 
 
 def _is_device(path: Path) -> bool:
-    if str(path) in STANDARD:
+    if str(path) in STANDARD_STREAMS:
         return True
     try:
         return stat.S_ISCHR(path.stat().st_mode)
@@ -201,7 +205,7 @@ def _is_device(path: Path) -> bool:
 
 
 def _write_device(path: Path, content: bytes) -> None:
-    standard = STANDARD.get(str(path))
+    standard = STANDARD_STREAMS.get(str(path))
     if standard is not None:
         (sys.stdout if standard == 1 else sys.stderr).flush()
     descriptor = os.open(path, os.O_WRONLY | os.O_NOCTTY) if standard is None else os.dup(standard)
@@ -263,7 +267,7 @@ def _remove_unfinished(folder: Path) -> None:
     """Remove what killed processes have left."""
     with contextlib.suppress(OSError):
         for entry in os.scandir(folder):
-            if UNFINISHED.match(entry.name):
+            if UNFINISHED_NAME.match(entry.name):
                 descriptor = os.open(entry.path, os.O_WRONLY)
                 try:
                     fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -9,10 +9,10 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-SILENCE = 2.0
+SILENCE_S = 2.0
 """Seconds after which a line says what is being done, where no terminal can rewrite one."""
 
-OFTEN = 0.1
+REWRITE_INTERVAL_S = 0.1
 """Seconds between two rewritings of a terminal's line while there is news,"""
 
 WITHOUT_NEWS = 0.5
@@ -67,7 +67,7 @@ class Progress:
         if self._stop is None:
             self.begin(phase)
         self.phase = phase
-        self._tell(OFTEN)
+        self._tell(REWRITE_INTERVAL_S)
 
     def end(self) -> None:
         """Say nothing more by itself."""
@@ -87,7 +87,7 @@ class Progress:
     def update(self, effort: Any) -> None:
         """Note what was done so far, and rewrite the line where there is time for it."""
         self._now = max(self._now[0], effort.skeletons), max(self._now[1], effort.draws)
-        self._tell(OFTEN)
+        self._tell(REWRITE_INTERVAL_S)
 
     def compiling(self, count: int) -> None:
         """Say that kernels are being compiled, of which so many are done: on a terminal in a line
@@ -121,7 +121,7 @@ class Progress:
         with _PRINTING:
             try:
                 terminal = sys.stderr.isatty()
-                if self.quiet or now - self._last < (often if terminal else SILENCE):
+                if self.quiet or now - self._last < (often if terminal else SILENCE_S):
                     return
                 self._last = now
 

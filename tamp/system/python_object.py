@@ -14,7 +14,7 @@ from tamp.system.reading import read_bytes
 MOST_BYTES = 10_000_000
 """The largest Python file that is read."""
 
-NAME = "grounding"
+OBJECT_NAME = "grounding"
 """What the object is called in the file."""
 
 
@@ -67,4 +67,4 @@ def python_object(path: Path, source: str | None = None) -> Any:
         raise InputError(
             f"it cannot be run: {type(error).__name__}: {error}", file=path, line=line
         ) from error
-    return vars(module).get(NAME)
+    return vars(module).get(OBJECT_NAME)

@@ -21,13 +21,13 @@ Answer = TypeVar("Answer")
 Tell = Callable[[Any], None]
 """What a run calls with news of itself."""
 
-LATE = 1.0
+KILL_AFTER_S = 1.0
 """Seconds after the deadline at which a run that has not answered is killed."""
 
-LOOK = 0.2
+POLL_INTERVAL_S = 0.2
 """Seconds between two looks whether somebody wants it to end."""
 
-BEHIND = 10
+NICENESS = 10
 """How much nicer the other runs are than the first one, so that it is not slowed down where cores
 are scarce.
 """
@@ -92,13 +92,13 @@ def race(
             processes.append(process)
             open_[ours] = number
 
-        while open_ and deadline.elapsed() < deadline.seconds + LATE:
+        while open_ and deadline.elapsed() < deadline.seconds + KILL_AFTER_S:
             if guard.asked():
                 # what it raised was dropped, as in a fork or while an answer was read
                 raise KeyboardInterrupt
 
-            left = deadline.seconds + LATE - deadline.elapsed()
-            ready = set(wait(list(open_), min(left, LOOK)))
+            left = deadline.seconds + KILL_AFTER_S - deadline.elapsed()
+            ready = set(wait(list(open_), min(left, POLL_INTERVAL_S)))
             for pipe, number in [item for item in open_.items() if item[0] in ready]:
                 try:
                     kind, content = pipe.recv()
@@ -143,7 +143,7 @@ def _member(
     os.close(held)
     threading.Thread(target=_leave_with, args=(lifeline,), daemon=True).start()
     if number:
-        os.nice(BEHIND)
+        os.nice(NICENESS)
 
     def tell(content: Any) -> None:
         pipe.send(("news", content))

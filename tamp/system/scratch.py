@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-OURS = re.compile(r"^tamp-(\d+)-\w+$")
+FOLDER_PATTERN = re.compile(r"^tamp-(\d+)-\w+$")
 """The names of such folders: the process's number is in them."""
 
-OLD = 60.0
+ABANDONED_AFTER_S = 60.0
 """Seconds after which a folder without its process has been left by one that was killed."""
 
 
@@ -36,13 +36,13 @@ def _tidy(place: Path) -> None:
     """Remove what killed processes have left, once a process."""
     with contextlib.suppress(OSError):
         for entry in os.scandir(place):
-            named = OURS.match(entry.name)
+            named = FOLDER_PATTERN.match(entry.name)
             if named is None or not entry.is_dir(follow_symlinks=False):
                 continue
             found = entry.stat(follow_symlinks=False)
             if (
                 found.st_uid == os.getuid()
-                and time.time() - found.st_mtime > OLD
+                and time.time() - found.st_mtime > ABANDONED_AFTER_S
                 and not _runs(int(named[1]))
             ):
                 shutil.rmtree(entry.path, ignore_errors=True)

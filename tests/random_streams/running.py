@@ -22,7 +22,7 @@ from tamp.symbolic.pddl.parser import (
     parse_goal,
     parse_streams,
 )
-from tamp.symbolic.pddl.relations import SAMPLE
+from tamp.symbolic.pddl.relations import SAMPLE_PREFIX
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tests.random_streams.oracle import World
@@ -84,7 +84,7 @@ def stream_task(problem: Problem) -> StreamTask:
         types = output_types(stream, domain)
         function = stream_function(problem, sources[stream.name])
         outputs = tuple(types[name] for name in stream.outputs)
-        advises = stream.name.startswith(SAMPLE)
+        advises = stream.name.startswith(SAMPLE_PREFIX)
         bound.append(BoundStream(stream, function, outputs, advises))
     functions = tuple(
         BoundFunction(one, partial(problem.price, one.name)) for one in declared.functions

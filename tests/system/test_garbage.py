@@ -8,12 +8,16 @@ import sys
 
 import pytest
 
-from tamp.system.garbage import HARDLY_EVER, SELDOM, infrequent_collection
+from tamp.system.garbage import HARDLY_EVER_CONTAINERS, SELDOM_CONTAINERS, infrequent_collection
 
 
 @pytest.mark.parametrize(
     ("before", "inside"),
-    [((700, 10, 10), SELDOM), ((HARDLY_EVER, 5, 5), HARDLY_EVER), ((0, 10, 10), 0)],
+    [
+        ((700, 10, 10), SELDOM_CONTAINERS),
+        ((HARDLY_EVER_CONTAINERS, 5, 5), HARDLY_EVER_CONTAINERS),
+        ((0, 10, 10), 0),
+    ],
 )
 def test_seldom_is_no_oftener_than_before_and_is_put_back(
     before: tuple[int, int, int], inside: int
@@ -51,4 +55,4 @@ def test_a_command_plans_without_a_look_for_garbage(tmp_path) -> None:
     for _ in range(2):  # the first may compile kernels, after which there is a look
         done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
     looks, threshold = map(int, done.stdout.split())
-    assert looks <= 1 and threshold == HARDLY_EVER
+    assert looks <= 1 and threshold == HARDLY_EVER_CONTAINERS

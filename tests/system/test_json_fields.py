@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tamp.errors import InputError
-from tamp.system.json_fields import LARGEST, Field, clipped
+from tamp.system.json_fields import LARGEST_NUMBER, Field, clipped
 
 DOCUMENT = {"actions": [{"name": "pick", "times": [0, 1.5]}], "cost": 3, "none": None, "flag": True}
 
@@ -48,8 +48,8 @@ def test_null_is_as_good_as_nothing() -> None:
         (math.nan, Field.number, "a finite number is expected"),
         (math.inf, Field.number, "a finite number is expected"),
         (10**400, Field.number, "a finite number is expected"),
-        (2 * LARGEST, Field.number, "2e.12 is larger than anything"),
-        (-2 * LARGEST, Field.number, "-2e.12 is larger than anything"),
+        (2 * LARGEST_NUMBER, Field.number, "2e.12 is larger than anything"),
+        (-2 * LARGEST_NUMBER, Field.number, "-2e.12 is larger than anything"),
         (-1, lambda f: f.number(0.0), "-1 is less than 0"),
         ("leg", lambda f: f.text(("arm", "base")), "'leg' is unknown.*Choices: arm, base"),
         ([1, 2], lambda f: f.numbers(3), "3 numbers are expected, not 2"),

@@ -12,7 +12,7 @@ import pytest
 from tamp.commands.solve import NO_PLAN, run
 from tamp.planner.report import time_shares
 from tamp.symbolic.algorithms.result import Outcome, SearchStatistics
-from tamp.system.progress import SILENCE, Progress
+from tamp.system.progress import SILENCE_S, Progress
 
 
 class Terminal(io.StringIO):
@@ -29,7 +29,7 @@ def numbers(text: str) -> list[tuple[int, int, float]]:
 def test_counters_never_shrink_whoever_reports(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
-    monkeypatch.setattr("tamp.system.progress.OFTEN", 0.0)
+    monkeypatch.setattr("tamp.system.progress.REWRITE_INTERVAL_S", 0.0)
     progress = Progress(quiet=False)
     for skeletons, draws in (
         (1, 10),
@@ -51,12 +51,12 @@ def test_a_long_silence_has_its_line(capsys: pytest.CaptureFixture[str]) -> None
     progress = Progress(quiet=False)
     progress.begin("searching")
     try:
-        time.sleep(2 * SILENCE + 1.0)  # no news at all: the main thread is in a long search
+        time.sleep(2 * SILENCE_S + 1.0)  # no news at all: the main thread is in a long search
     finally:
         progress.end()
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) >= 2 and all(line.strip().startswith("searching") for line in lines)
-    time.sleep(SILENCE + 0.5)
+    time.sleep(SILENCE_S + 0.5)
     assert capsys.readouterr().err == ""
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from tamp.errors import InputError
-from tamp.system.python_object import NAME, python_object, python_source
+from tamp.system.python_object import OBJECT_NAME, python_object, python_source
 
 
 @pytest.fixture
@@ -18,14 +18,14 @@ def file(tmp_path: Path) -> Path:
 
 
 def test_what_it_calls_by_the_name_is_returned(file: Path) -> None:
-    file.write_text(f"{NAME} = [1, 2]\nother = 3\n")
+    file.write_text(f"{OBJECT_NAME} = [1, 2]\nother = 3\n")
     assert python_object(file) == [1, 2]
     file.write_text("other = 3\n")
     assert python_object(file) is None
 
 
 def test_each_call_runs_it_anew_and_leaves_nothing_behind(file: Path) -> None:
-    file.write_text(f"{NAME} = []\n")
+    file.write_text(f"{OBJECT_NAME} = []\n")
     known = set(sys.modules)
     assert python_object(file) is not python_object(file)
     assert not {name for name in set(sys.modules) - known if "mine" in name}
@@ -33,19 +33,19 @@ def test_each_call_runs_it_anew_and_leaves_nothing_behind(file: Path) -> None:
 
 
 def test_it_knows_its_file_and_not_the_main_program(file: Path) -> None:
-    file.write_text(f"{NAME} = (__file__, __name__ == '__main__')\n")
+    file.write_text(f"{OBJECT_NAME} = (__file__, __name__ == '__main__')\n")
     assert python_object(file) == (str(file), False)
 
 
 def test_a_text_read_before_counts_more_than_the_file(file: Path) -> None:
-    file.write_text(f"{NAME} = 1\n")
-    assert python_object(file, f"{NAME} = 2\n") == 2
+    file.write_text(f"{OBJECT_NAME} = 1\n")
+    assert python_object(file, f"{OBJECT_NAME} = 2\n") == 2
 
 
 def test_an_encoding_that_it_says_is_obeyed(file: Path) -> None:
-    file.write_bytes(f"# coding: latin-1\n{NAME} = 'Grüße'\n".encode("latin-1"))
+    file.write_bytes(f"# coding: latin-1\n{OBJECT_NAME} = 'Grüße'\n".encode("latin-1"))
     assert python_object(file) == "Grüße"
-    file.write_bytes(f"{NAME} = 'Grüße'\n".encode("latin-1"))
+    file.write_bytes(f"{OBJECT_NAME} = 'Grüße'\n".encode("latin-1"))
     with pytest.raises(InputError, match="this is no Python file"):
         python_source(file)
 

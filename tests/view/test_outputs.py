@@ -9,8 +9,8 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.geometric.loading.meshes import find_mesh
+from tamp.view.external_meshes import check_inside
 from tamp.view.outputs import MOST_PIXELS, OutputRequest, check_page
-from tamp.view.outside import check_inside
 from tamp.view.video_formats import VIDEO_FORMATS, check_suffix
 from tests.needs import NEEDS_PYBULLET
 

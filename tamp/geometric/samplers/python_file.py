@@ -8,7 +8,7 @@ from pathlib import Path
 from tamp.errors import InputError
 from tamp.geometric.samplers.choice import SAMPLER_MODES, USER_OBJECT, Grounding
 from tamp.geometric.samplers.sampler import Classifier, Generator
-from tamp.system.python_object import NAME, python_object
+from tamp.system.python_object import OBJECT_NAME, python_object
 
 PYTHON_SUFFIX = ".py"
 
@@ -59,13 +59,12 @@ def python_grounding(path: Path, source: str | None = None) -> Grounding:
     found = python_object(path, source)
     if isinstance(found, type) or not isinstance(found, Generator | Classifier):
         what = (
-            f"'{NAME}' has neither propose nor classify"
+            f"'{OBJECT_NAME}' has neither propose nor classify"
             if found is not None
-            else f"it defines no '{NAME}'"
+            else f"it defines no '{OBJECT_NAME}'"
         )
-        what = f"'{NAME}' is a class, not an object" if isinstance(found, type) else what
-        remedy = (
-            f"{NAME} = Mine(), an object with the methods of tamp/geometric/samplers/sampler.py"
-        )
+        what = f"'{OBJECT_NAME}' is a class, not an object" if isinstance(found, type) else what
+        methods = "the methods of tamp/geometric/samplers/sampler.py"
+        remedy = f"{OBJECT_NAME} = Mine(), an object with {methods}"
         raise InputError(what, file=path, remedy=remedy)
     return found

@@ -13,7 +13,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.approach import LIFT_DISTANCE_M, RETREAT_DISTANCE_M
 from tamp.geometric.streams.departure import lift_hits
-from tamp.geometric.streams.heights import too_high
+from tamp.geometric.streams.reachable_height import too_high
 from tamp.geometric.values import BaseConf, Grasp, Reach
 from tamp.stream import Call, Rejection, RejectionKind
 

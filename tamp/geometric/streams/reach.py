@@ -11,8 +11,8 @@ from tamp.geometric.context import Context
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.streams.flat import too_flat
-from tamp.geometric.streams.heights import too_high
+from tamp.geometric.streams.reachable_height import too_high
+from tamp.geometric.streams.too_flat import too_flat
 from tamp.stream import Call, Rejection, RejectionKind
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from tamp.symbolic.pddl.structs import Task
 from tamp.symbolic.search.operators import InstantiatedTask
-from tamp.symbolic.search.replay import REFUTED, violation
+from tamp.symbolic.search.replay import REFUTED_TEXT, violation
 from tamp.symbolic.search.search import Plan, Reason, SearchResult, search
 from tamp.system.deadline import Deadline, OutOfTime
 
@@ -100,4 +100,4 @@ def refutation(task: Task, plan: Plan | None) -> str | None:
     if plan is None:
         return None
     reason = violation(task, [(operator.name, operator.arguments) for operator in plan.operators])
-    return None if reason is None else f"{REFUTED}: {reason}"
+    return None if reason is None else f"{REFUTED_TEXT}: {reason}"

@@ -124,10 +124,10 @@ def plan_adaptively(run: Run) -> Result:
                 if run.latest is not None and found.expanded >= LONG_SEARCH:
                     skeleton.recall(run.latest)
                 run.latest = skeleton
-                values = bind_for_its_worth(run, skeleton, found.expanded)
+                values = bind_within_effort(run, skeleton, found.expanded)
                 if values is not None:
                     return solved_result(run, skeleton, values)
-                result = learn(run, skeleton)
+                result = update_knowledge(run, skeleton)
 
             result = result or escalate(run, escalation, run.binder.draws > drawn_before)
             if result is not None:
@@ -137,7 +137,7 @@ def plan_adaptively(run: Run) -> Result:
         return interrupted_result(run, error)
 
 
-def bind_for_its_worth(run: Run, skeleton: Skeleton, expanded: int) -> dict[int, str] | None:
+def bind_within_effort(run: Run, skeleton: Skeleton, expanded: int) -> dict[int, str] | None:
     """Bind a skeleton; after a long search with more and more tries, as long as that costs less.
 
     Args:
@@ -176,7 +176,7 @@ def draws_of_round(skeleton: Skeleton) -> tuple[int, int]:
     return FIRST_TRIES + skeleton.rounds, draws * (1 + skeleton.rounds)
 
 
-def learn(run: Run, skeleton: Skeleton) -> None:
+def update_knowledge(run: Run, skeleton: Skeleton) -> None:
     """Take over what a round in vain has shown, and instantiate anew where that changes the task.
 
     Prices need no such step: the binder keeps them, and the next search asks for them.

@@ -29,7 +29,7 @@ from tamp.system.deadline import Deadline, OutOfTime
 MAX_BOUND_STATES = 30
 """States that are expanded for the lower bound."""
 
-WEIGHTS = (2.0, 1.0)
+CHEAPER_PLAN_WEIGHTS = (2.0, 1.0)
 """Of the estimate in searches for cheaper plans, in turn."""
 
 MAX_VAIN_SEARCHES = 10
@@ -83,7 +83,7 @@ def solve_anytime(
         found = None
         if cost > bound + 1e-9 and vain < MAX_VAIN_SEARCHES:
             vain += 1
-            found = _cheaper(run, WEIGHTS[vain % len(WEIGHTS)], cost)
+            found = _cheaper(run, CHEAPER_PLAN_WEIGHTS[vain % len(CHEAPER_PLAN_WEIGHTS)], cost)
 
         if found is None:
             found = _redrawn(run, skeleton, choose)

@@ -280,7 +280,7 @@ class Streams:
         )
 
 
-STRANGERS = (Streams.draw.__code__,)
+FOREIGN_CALLERS = (Streams.draw.__code__,)
 """For an alarm: what calls the functions that anyone may have written."""
 
 

@@ -9,10 +9,10 @@ from typing import Any, cast
 
 from tamp.errors import InputError
 from tamp.symbolic.algorithms.bound_stream import Objects
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import PLACEHOLDER_MARK
 from tamp.symbolic.pddl.structs import Action, Atom, Fact, Function
 
-UNKNOWN = 1.0
+COST_BEFORE_ASKED = 1.0
 """What a placeholder's cost is taken for until the function was asked once."""
 
 
@@ -55,9 +55,9 @@ class Costs(Mapping[Fact, float]):
         name = fact[0]
         if name not in self._functions:
             raise KeyError(fact)
-        if any(word.startswith(MARK) for word in fact[1:]):
+        if any(word.startswith(PLACEHOLDER_MARK) for word in fact[1:]):
             total, count = self._sums.get(name, (0.0, 0))
-            return total / count if count else UNKNOWN
+            return total / count if count else COST_BEFORE_ASKED
         if fact not in self._computed:
             self._computed[fact] = cost = self._ask(fact)
             total, count = self._sums.get(name, (0.0, 0))

@@ -46,7 +46,7 @@ PLANS_PER_LEVEL = 4
 MAX_DRY_ROUNDS = 50
 """Rounds without anything left to draw after which prices have moved all that they can."""
 
-TWIN = " again"
+TWIN_SUFFIX = " again"
 """Ends the name of a stream's double; no PDDL name has a blank."""
 
 TRIES, BUDGET = 4, 200
@@ -196,7 +196,7 @@ def _excluded_from_the_start(run: Run) -> bool:
         return False
 
     twins = [
-        replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN}"))
+        replace(stream, declaration=replace(stream.declaration, name=f"{stream.name}{TWIN_SUFFIX}"))
         for stream in task.streams
         if not stream.is_test
     ]

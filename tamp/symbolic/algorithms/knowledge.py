@@ -10,7 +10,10 @@ from tamp.stream import Rejection
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import CallKey, Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, PlaceholdersOfCalls
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import (
+    PLACEHOLDER_MARK,
+    PlaceholdersOfCalls,
+)
 from tamp.symbolic.pddl.structs import Fact
 
 MAX_ENUMERATED_VALUES = 8
@@ -130,7 +133,7 @@ def may_give_more(knowledge: Knowledge, skeleton: Skeleton) -> bool:
 
 def certified_fact_of(knowledge: Knowledge, name: str) -> Fact | None:
     """Return a fact that the call which gave a real value certifies of it; None of objects."""
-    if name.startswith(MARK):
+    if name.startswith(PLACEHOLDER_MARK):
         return None
     facts = chain(knowledge.sampled_facts, knowledge.certified_facts)
     return next((fact for fact in facts if name in fact[1:]), None)

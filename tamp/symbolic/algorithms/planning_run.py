@@ -16,11 +16,14 @@ from tamp.symbolic.algorithms.binding.skeleton_steps import to_steps
 from tamp.symbolic.algorithms.bound_stream import Streams
 from tamp.symbolic.algorithms.experience.failing_states import choose_instances
 from tamp.symbolic.algorithms.knowledge import Knowledge, certified_fact_of, may_give_more
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, OptimisticInstance
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import (
+    PLACEHOLDER_MARK,
+    OptimisticInstance,
+)
 from tamp.symbolic.algorithms.optimistic.optimistic_task import OptimisticTask
 from tamp.symbolic.algorithms.planning_task import PlanningTask
 from tamp.symbolic.algorithms.priced_search import (
-    WEIGHT,
+    FIRST_PLAN_WEIGHT,
     PricedPlan,
     exclude_each_other,
     priced_search,
@@ -28,10 +31,10 @@ from tamp.symbolic.algorithms.priced_search import (
 from tamp.symbolic.algorithms.result import Progress, SearchStatistics
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import InstantiatedTask
-from tamp.symbolic.search.replay import REFUTED
+from tamp.symbolic.search.replay import REFUTED_TEXT
 from tamp.system.deadline import Deadline
 
-FORBIDDEN = Rejection("what was found besides forbids the plan")
+REPLAY_REFUSAL = Rejection("what was found besides forbids the plan")
 """Why values failed that only the replay refused."""
 
 
@@ -118,7 +121,9 @@ def renew(run: Run) -> None:
         run.optimistic = run.instantiate(run.task, run.knowledge)
 
 
-def search_plan(run: Run, *, weight: float = WEIGHT, below: float = math.inf) -> PricedPlan | None:
+def search_plan(
+    run: Run, *, weight: float = FIRST_PLAN_WEIGHT, below: float = math.inf
+) -> PricedPlan | None:
     """Search for a plan of the optimistic task, priced by experience.
 
     Args:
@@ -192,7 +197,7 @@ def skeleton_of(run: Run, found: PricedPlan) -> Skeleton:
 
 def _certified_fact_of(run: Run, name: str) -> Fact | None:
     """Return a fact that the call which gives a value certifies of it; None of objects."""
-    if name.startswith(MARK):
+    if name.startswith(PLACEHOLDER_MARK):
         return run.optimistic.facts.certified_fact_of(name)
     return certified_fact_of(run.knowledge, name)
 
@@ -222,11 +227,11 @@ def bind_skeleton(
     mistake = next((fault for fault in faults if not fault.expected), None)
     if mistake is not None:
         run.effort.refuted += 1
-        run.streams.warn(f"{REFUTED}: {mistake.reason}")
+        run.streams.warn(f"{REFUTED_TEXT}: {mistake.reason}")
 
     if values is None and faults:
         skeleton.memory.clear()
         for node in skeleton.nodes:
             if node.outputs:
-                run.knowledge.experience.record(node.fact, FORBIDDEN)
+                run.knowledge.experience.record(node.fact, REPLAY_REFUSAL)
     return values

@@ -23,7 +23,7 @@ SEARCH_LIMIT = 2000
 """States that a search may expand in looking for a cheap plan; after that the first plan is
 taken."""
 
-WEIGHT = 5.0
+FIRST_PLAN_WEIGHT = 5.0
 """Of the estimate in the search for a first plan."""
 
 
@@ -52,7 +52,7 @@ def priced_search(
     audit: Callable[[], bool],
     effort: SearchStatistics,
     *,
-    weight: float = WEIGHT,
+    weight: float = FIRST_PLAN_WEIGHT,
     below: float = math.inf,
     brief: bool = False,
     seed: int = 0,

@@ -3,7 +3,7 @@ asked.
 
 By convention a relation R has the streams sample-R, which proposes, and test-R, which judges. What
 test-R certifies says that R holds; where there is no such stream, it is what sample-R alone
-certifies. The generator may serve further streams, for places of other kinds (`SAMPLES`).
+certifies. The generator may serve further streams, for places of other kinds (`SAMPLE_SUFFIXES`).
 """
 
 from __future__ import annotations
@@ -16,22 +16,22 @@ from tamp.symbolic.pddl.atoms import signed_atoms
 from tamp.symbolic.pddl.complement import complement_name
 from tamp.symbolic.pddl.structs import Atom, Domain, Fact, Formula, Stream, StreamFile
 
-SAMPLE = "sample-"
+SAMPLE_PREFIX = "sample-"
 """How the names of streams begin that propose; so named, they only take advice from the state."""
 
 POSE = "pose"
 """The predicate and the type of a body's pose."""
 
-KINDS = frozenset({"body", "movable", "fixed", "surface", "container"})
+BODY_KINDS = frozenset({"body", "movable", "fixed", "surface", "container"})
 """What the scene says that objects are, by types or by unary facts."""
 
-POSITIONS = frozenset({(POSE, 1), ("at-pose", 1)})
+POSE_POSITIONS = frozenset({(POSE, 1), ("at-pose", 1)})
 """Predicates and places of theirs that poses stand at in any domain."""
 
-SAMPLES = ("", "-inside", "-on-movable", "-inside-movable")
+SAMPLE_SUFFIXES = ("", "-inside", "-on-movable", "-inside-movable")
 """Ends of the names of streams that one generator serves: sample-R, sample-R-inside, ..."""
 
-TESTS = ("", "-also")
+TEST_SUFFIXES = ("", "-also")
 """The same of its classifier: test-R asks of what was proposed, test-R-also of any poses."""
 
 
@@ -80,7 +80,7 @@ def relation_names(streams: StreamFile) -> tuple[str, ...]:
     named = {(verb, name) for verb, _, name in split if verb in ("sample", "test") and name}
     further = {
         (verb, f"{name}{suffix}")
-        for verb, suffixes in (("sample", SAMPLES), ("test", TESTS))
+        for verb, suffixes in (("sample", SAMPLE_SUFFIXES), ("test", TEST_SUFFIXES))
         for _, name in named
         for suffix in suffixes[1:]
     }
@@ -89,8 +89,8 @@ def relation_names(streams: StreamFile) -> tuple[str, ...]:
 
 def streams_of(name: str) -> tuple[str, ...]:
     """Return the names that streams of a relation may have."""
-    sampled = (f"sample-{name}{suffix}" for suffix in SAMPLES)
-    return (*sampled, *(f"test-{name}{suffix}" for suffix in TESTS))
+    sampled = (f"sample-{name}{suffix}" for suffix in SAMPLE_SUFFIXES)
+    return (*sampled, *(f"test-{name}{suffix}" for suffix in TEST_SUFFIXES))
 
 
 def relation_of(streams: StreamFile, domain: Domain, name: str) -> Relation | None:
@@ -245,7 +245,7 @@ def _pose_variables(stream: Stream, sample: Stream | None, domain: Domain) -> se
     """Find the variables of a stream that stand for poses, by what the domain declares or by
     what is sampled.
     """
-    positions = {*POSITIONS}
+    positions = {*POSE_POSITIONS}
     for one in domain.predicates.values():
         positions |= {
             (one.name, at) for at, declared in enumerate(one.parameters) if POSE in declared.types
@@ -285,7 +285,7 @@ def _wanted(
         declared = domain.predicates.get(atom.predicate)
         if declared is None:  # a type in the place of a predicate
             types |= dict.fromkeys([(atom.predicate,)] if variable in atom.terms else [])
-        elif len(atom.terms) == 1 and atom.predicate in KINDS and atom.terms[0] == variable:
+        elif len(atom.terms) == 1 and atom.predicate in BODY_KINDS and atom.terms[0] == variable:
             kinds[atom.predicate] = None
         else:
             pairs = zip(atom.terms, declared.parameters, strict=True)

@@ -22,7 +22,7 @@ their time.
 MAX_TOKENS = 1_000_000
 """Words and parentheses of a text; more would need gigabytes."""
 
-MANY = 200_000
+MAX_SEARCHED_TOKENS = 200_000
 """Words from which on a text is not searched for its wrong parenthesis: the place where it was
 noticed is named.
 """
@@ -69,7 +69,7 @@ def read(
             if not stack:
                 culprit = (
                     surplus(_tokens(text, name, line_offset, column_offset)).place
-                    if count < MANY
+                    if count < MAX_SEARCHED_TOKENS
                     else None
                 )
                 where = culprit or Place(name, line, column)
@@ -83,7 +83,7 @@ def read(
 
     if stack:
         tokens = _tokens(text, name, line_offset, column_offset)
-        culprit = left_open(tokens).place if len(tokens) < MANY else stack[-1][0]
+        culprit = left_open(tokens).place if len(tokens) < MAX_SEARCHED_TOKENS else stack[-1][0]
         raise error(culprit, "this '(' is never closed: a ')' is missing")
 
     return tuple(forms)
@@ -116,7 +116,9 @@ def _tokens(text: str, file: str | None, line_offset: int, column_offset: int) -
     """
     tokens: list[Token] = []
     last, indent = 0, 0
-    for word, line, column in islice(_words(text, file, line_offset, column_offset), MANY):
+    for word, line, column in islice(
+        _words(text, file, line_offset, column_offset), MAX_SEARCHED_TOKENS
+    ):
         first = line != last
         last, indent = line, column if first else indent
         tokens.append(Token(word, Place(file, line, column), indent, first))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-STEPS = 20_000
+MAX_CHOICES = 20_000
 """Choices looked at in the attempt to let all goals hold together."""
 
 Way = tuple[int, ...]
@@ -34,7 +34,7 @@ def hold_together(
             return True
         for way in order[index]:
             steps += 1
-            if steps > STEPS:
+            if steps > MAX_CHOICES:
                 return True
             if all(allowed >> k & 1 for k in way) and choose(index + 1, allowed & partners(way)):
                 return True

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import Axiom, InstantiatedTask
 
-ALTERNATIVES = 512
+MAX_ALTERNATIVES = 512
 """Conjunctions into which a goal is opened at most; beyond, it excludes nothing."""
 
 MOST_WORK = 100_000
@@ -104,7 +104,7 @@ def _opened(
     yield literal
 
 
-ANY: list[Way] = [frozenset()]
+ANY_WAY: list[Way] = [frozenset()]
 """How a literal holds of which nothing is known."""
 
 
@@ -122,15 +122,15 @@ class _Opener:
 
         self._work += 1
         if fact in above or self._work > MOST_WORK:
-            return ANY
+            return ANY_WAY
         above |= {fact}
 
         if wanted:
             ways: list[Way] = []
             for axiom in self._rules[fact]:
                 ways += self._product([self.ways(part, above) for part in _body(axiom)])
-                if len(ways) > ALTERNATIVES:
-                    return ANY
+                if len(ways) > MAX_ALTERNATIVES:
+                    return ANY_WAY
             return ways
 
         return self._product(
@@ -142,9 +142,9 @@ class _Opener:
 
     def _product(self, choices: list[list[Way]]) -> list[Way]:
         """Join one of each without contradictions; choices beyond ALTERNATIVES stay open."""
-        ways = ANY
+        ways = ANY_WAY
         for choice in sorted(choices, key=len):
-            if len(ways) * len(choice) > ALTERNATIVES:
+            if len(ways) * len(choice) > MAX_ALTERNATIVES:
                 continue
             self._work += len(ways) * len(choice)
             joined = (a | b for a in ways for b in choice)

@@ -11,7 +11,7 @@ from tamp.symbolic.pddl.structs import Fact
 Facts = frozenset[Fact]
 NO_FACTS: Facts = frozenset()
 
-ANY = "(any)"
+ANY_OBJECT = "(any)"
 """The predicate of static facts that say that an object is there, of which no condition says
 anything else.
 """

@@ -31,7 +31,7 @@ from tamp.symbolic.search.replay_formulas import (
     substituted,
 )
 
-REFUTED = (
+REFUTED_TEXT = (
     "a plan was dropped that did not hold when it was replayed, "
     "a mistake of the planner's: please report it"
 )

@@ -16,7 +16,7 @@ from tamp.symbolic.search.heuristics.registry import ADMISSIBLE, HEURISTICS, Heu
 from tamp.symbolic.search.lazy import lazy
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.packed import selection
-from tamp.symbolic.search.packed.restarts import STALLED, greedy_with_restarts
+from tamp.symbolic.search.packed.restarts import STALLED_STATES, greedy_with_restarts
 from tamp.symbolic.search.packed.search import fits, packed_lazy
 from tamp.symbolic.search.successors import Price, Successors
 from tamp.system.deadline import Deadline
@@ -130,7 +130,7 @@ def search(
         run = first = space([HEURISTICS[name](successors) for name in names])
         if packable:
             run.too_slow = lambda: (
-                (search == "greedy" and limit is None and run.expanded >= STALLED)
+                (search == "greedy" and limit is None and run.expanded >= STALLED_STATES)
                 or selection.pays(run.patience * successors.entries)
             )
         try:

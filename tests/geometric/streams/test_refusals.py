@@ -17,10 +17,10 @@ from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.placement import Placement, certified_pose
 from tamp.geometric.stability.stable_poses import stable_faces_of
 from tamp.geometric.streams.approach import approach_hits
-from tamp.geometric.streams.flat import too_flat
-from tamp.geometric.streams.heights import highest
+from tamp.geometric.streams.reachable_height import highest
 from tamp.geometric.streams.refusals import covered, narrowest, no_grasp, no_room
 from tamp.geometric.streams.sampling import sample_grasp
+from tamp.geometric.streams.too_flat import too_flat
 from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve

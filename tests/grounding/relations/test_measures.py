@@ -12,7 +12,7 @@ from benchmarks.relations.geometry import situations
 from benchmarks.relations.hand import shown
 from benchmarks.relations.relations import RELATIONS
 from grounding.relations.catalogue import catalogue, measure
-from grounding.relations.chance import about_z, chance
+from grounding.relations.null_hypothesis import about_z, chance
 from grounding.relations.situation import Situations, joined, situation_of
 from tamp.geometric.loading.load import load_scene
 

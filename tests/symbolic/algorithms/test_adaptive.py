@@ -15,9 +15,9 @@ from tamp.symbolic.algorithms.adaptive import (
     ROUND_DRAWS,
     ROUNDS_BEFORE_ALL_OBJECTS,
     draws_of_round,
-    learn,
     plan_adaptively,
     start_adaptive,
+    update_knowledge,
 )
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.planning_run import Run, search_plan, skeleton_of
@@ -54,7 +54,7 @@ def test_a_round_in_vain_is_counted_and_what_ended_is_left_out() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
     assert run.binder.bind(skeleton, 8, 100) is None
     before = run.optimistic
-    learn(run, skeleton)
+    update_knowledge(run, skeleton)
     assert skeleton.rounds == 1
     assert run.effort.draws == run.binder.draws == 9, (
         "four poses, their tests, and one try that finds no more"
@@ -69,7 +69,7 @@ def test_nothing_new_leaves_the_optimistic_task_alone() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
     assert run.binder.bind(skeleton, 2, 100) is None
     before = run.optimistic
-    learn(run, skeleton)
+    update_knowledge(run, skeleton)
     assert run.optimistic is before and skeleton.rounds == 1
 
 
@@ -81,7 +81,7 @@ def test_excluded_objects_come_back_when_something_fails_at_them_or_after_some_r
     run.knowledge.excluded_objects = frozenset({"mug", "cup"})
     skeleton.rounds = rounds - 1
     run.knowledge.experience.record(("clear", "mug", "#p7"), Rejection("no"))
-    learn(run, skeleton)
+    update_knowledge(run, skeleton)
     left = {"cup"} if rounds < ROUNDS_BEFORE_ALL_OBJECTS else set()
     assert run.knowledge.excluded_objects == left
 
@@ -90,7 +90,7 @@ def test_facts_found_besides_change_the_task() -> None:
     run, skeleton = planned("(put tea)")
     before = run.optimistic
     run.streams.wild["pose", "tea", "tea"] = None
-    learn(run, skeleton)
+    update_knowledge(run, skeleton)
     assert run.optimistic is not before and ("pose", "tea", "tea") in run.knowledge.certified_facts
 
 

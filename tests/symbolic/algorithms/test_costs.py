@@ -9,7 +9,7 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.symbolic.algorithms.bound_stream import Objects
-from tamp.symbolic.algorithms.costs import UNKNOWN, BoundFunction, Costs
+from tamp.symbolic.algorithms.costs import COST_BEFORE_ASKED, BoundFunction, Costs
 from tamp.symbolic.pddl.structs import Action, And, Atom, Fact, Function, Parameter
 
 OBJECTS = Objects({"a": ("object",), "b": ("object",)}, {"a": 1.0, "b": 5.0})
@@ -49,7 +49,7 @@ def test_what_the_problem_states_comes_first() -> None:
 
 def test_placeholders_cost_the_mean_of_what_was_computed() -> None:
     found = costs(distance)
-    assert found["distance", "a", "#q1"] == UNKNOWN
+    assert found["distance", "a", "#q1"] == COST_BEFORE_ASKED
     assert found["distance", "a", "b"] == 4.0
     assert found["distance", "#q1", "#q2"] == 4.0
     assert found["distance", "a", "a"] == 0.0

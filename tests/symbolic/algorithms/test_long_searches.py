@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from tamp.symbolic.algorithms import adaptive
-from tamp.symbolic.algorithms.adaptive import bind_for_its_worth
+from tamp.symbolic.algorithms.adaptive import bind_within_effort
 from tamp.symbolic.algorithms.experience.stream_statistics import MOST_SKIPPED, Patience
 from tests.symbolic.algorithms.binding.shelf import planned
 
@@ -14,7 +14,7 @@ GOALS = ("(and (put mug) (put tea))", "(put mug)")
 
 def test_a_short_search_has_its_plan_bound_once() -> None:
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
-    assert bind_for_its_worth(run, skeleton, 10) is None
+    assert bind_within_effort(run, skeleton, 10) is None
     assert skeleton.rounds == 0 and run.binder.draws == 8, "four poses, each tested"
 
 
@@ -22,14 +22,14 @@ def test_a_long_search_has_it_bound_until_nothing_is_left(monkeypatch: pytest.Mo
     """Two tries of the four poses in the first round; the one that is clear comes in the next."""
     monkeypatch.setattr(adaptive, "FIRST_TRIES", 2)
     run, skeleton = planned("(put tea)", lambda cup, pose: pose == 4)
-    values = bind_for_its_worth(run, skeleton, 1000)
+    values = bind_within_effort(run, skeleton, 1000)
     assert values is not None and [
         run.streams.objects.values[name] for name in values.values()
     ] == [4]
     assert skeleton.rounds == 1
 
     run, skeleton = planned("(put tea)", lambda cup, pose: False)
-    assert bind_for_its_worth(run, skeleton, 1000) is None, (
+    assert bind_within_effort(run, skeleton, 1000) is None, (
         "no round is without end where nothing is drawn"
     )
 
@@ -66,7 +66,7 @@ def test_a_long_search_has_each_call_of_its_plan_tried(monkeypatch: pytest.Monke
     monkeypatch.setattr(adaptive, "DRAWS_FOR_A_STATE", 1)
     run, skeleton = planned("(and (put tea) (put mug))", lambda cup, pose: pose == 2)
     assert len(skeleton.nodes) == 4
-    assert bind_for_its_worth(run, skeleton, 1) is not None
+    assert bind_within_effort(run, skeleton, 1) is not None
     assert skeleton.rounds == 1
 
 

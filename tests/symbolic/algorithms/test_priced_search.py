@@ -8,7 +8,7 @@ import pytest
 
 from tamp.stream import Rejection
 from tamp.symbolic.algorithms import priced_search as module
-from tamp.symbolic.algorithms.experience.stream_statistics import SCALE, Experience
+from tamp.symbolic.algorithms.experience.stream_statistics import PRICE_PER_FAILURE, Experience
 from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts
 from tamp.symbolic.algorithms.optimistic.optimistic_task import OptimisticTask
@@ -83,7 +83,7 @@ def test_failures_outweigh_cost_by_their_price(failures: int) -> None:
     """A crossing costs 1 and its price, sailing 1.4; the mean cost, 1.2, is the unit of prices."""
     found = searched(crossing(ferry=1.4), failed(BRIDGE, failures))
     assert found is not None
-    price = 1.2 * SCALE * failures
+    price = 1.2 * PRICE_PER_FAILURE * failures
     assert names(found) == (["cross"] if 1.0 + price < 1.4 else ["sail"])
     assert found.prices.get(BRIDGE, 0.0) == pytest.approx(price)
 
@@ -92,8 +92,8 @@ def test_prices_are_in_units_of_the_mean_cost_only_where_that_exceeds_one() -> N
     cheap = searched(crossing(ferry=0.5, bridge=0.5), failed(BRIDGE, 1))
     dear = searched(crossing(ferry=30.0, bridge=10.0), failed(BRIDGE, 1))
     assert cheap is not None and dear is not None
-    assert cheap.prices[BRIDGE] == pytest.approx(SCALE)
-    assert dear.prices[BRIDGE] == pytest.approx(20.0 * SCALE)
+    assert cheap.prices[BRIDGE] == pytest.approx(PRICE_PER_FAILURE)
+    assert dear.prices[BRIDGE] == pytest.approx(20.0 * PRICE_PER_FAILURE)
 
 
 def test_a_success_takes_the_price_off() -> None:
@@ -202,5 +202,5 @@ def test_untried_tests_of_placeholders_have_a_price_in_a_run() -> None:
     assert again is not None and fact not in again.prices
     earlier = searched(run.optimistic, posteriors={"sample-pose": Posterior(0, 3)})
     assert earlier is not None and earlier.prices[skeleton.nodes[0].fact] == pytest.approx(
-        4 * SCALE
+        4 * PRICE_PER_FAILURE
     )

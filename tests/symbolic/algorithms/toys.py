@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from tamp.symbolic.algorithms.adaptive import solve_adaptive
-from tamp.symbolic.algorithms.bound_stream import STRANGERS, BoundStream, Objects
+from tamp.symbolic.algorithms.bound_stream import FOREIGN_CALLERS, BoundStream, Objects
 from tamp.symbolic.algorithms.incremental import solve_incremental
 from tamp.symbolic.algorithms.result import Outcome, Result, StreamTask
 from tamp.symbolic.pddl.parser import (
@@ -17,7 +17,7 @@ from tamp.symbolic.pddl.parser import (
     parse_goal,
     parse_streams,
 )
-from tamp.symbolic.pddl.relations import SAMPLE
+from tamp.symbolic.pddl.relations import SAMPLE_PREFIX
 from tamp.symbolic.pddl.structs import Task
 from tamp.system.deadline import Deadline, OutOfTime
 from tamp.system.interrupts import Interrupter
@@ -46,7 +46,7 @@ def stream_task(
                 stream,
                 functions[stream.name],
                 tuple(types[name] for name in stream.outputs),
-                advises=stream.name.startswith(SAMPLE),
+                advises=stream.name.startswith(SAMPLE_PREFIX),
             )
         )
     task = Task(
@@ -64,7 +64,7 @@ def solve(algorithm: str, problem: StreamTask, *, seconds: float = 8.0, seed: in
     """Run an algorithm as the api does: under an alarm, every stream call with a generator of its own."""
     deadline = Deadline(seconds)
     try:
-        return Interrupter(deadline, strangers=STRANGERS).run(
+        return Interrupter(deadline, strangers=FOREIGN_CALLERS).run(
             lambda: ALGORITHMS[algorithm](
                 problem, lambda key: random.Random(f"{seed} {key}"), deadline, lambda effort: None
             )

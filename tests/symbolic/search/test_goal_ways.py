@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search import goal_ways as module
-from tamp.symbolic.search.goal_ways import ALTERNATIVES, Way, goal_parts
+from tamp.symbolic.search.goal_ways import MAX_ALTERNATIVES, Way, goal_parts
 from tamp.symbolic.search.operators import Axiom, Goal, InstantiatedTask, Meaning
 
 FLUENTS: list[Fact] = [("a",), ("b",), ("c",)]
@@ -116,9 +116,9 @@ def test_rules_in_circles_say_nothing() -> None:
 
 
 def test_too_many_ways_say_nothing() -> None:
-    many = [axiom("p", f"x{i}") for i in range(ALTERNATIVES + 1)]
+    many = [axiom("p", f"x{i}") for i in range(MAX_ALTERNATIVES + 1)]
     assert ways(Goal(facts("p")), *many) == [{frozenset()}]
-    assert len(ways(Goal(facts("p")), *many[:-1])[0]) == ALTERNATIVES
+    assert len(ways(Goal(facts("p")), *many[:-1])[0]) == MAX_ALTERNATIVES
 
 
 @st.composite

@@ -8,14 +8,14 @@ from tamp.symbolic.algorithms.binding.levels import Level, Levels
 from tamp.symbolic.algorithms.binding.skeleton import CallNode, LiftedFact, Skeleton, Term
 from tamp.symbolic.algorithms.bound_stream import Instance, Streams
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import PLACEHOLDER_MARK
 from tamp.symbolic.pddl.structs import Fact
 from tamp.system.deadline import Deadline, OutOfTime
 
-REFUSALS = 20
+MAX_REFUSED_BINDINGS = 20
 """Complete sets of values that may turn out not to hold before a skeleton is left for this time."""
 
-RECENT = 3
+RECENT_RESULTS = 3
 """How many of an instance's latest results are tried again before drawing new ones."""
 
 
@@ -84,7 +84,7 @@ class Binder:
                 return values
             else:
                 refusals += 1
-                if refusals > REFUSALS or not nodes:
+                if refusals > MAX_REFUSED_BINDINGS or not nodes:
                     return None
                 index = len(nodes) - 1
                 level = level_at(index)
@@ -202,7 +202,7 @@ class Binder:
             yield remembered[1]
 
         earlier = list(instance.results)
-        for outputs in () if fresh else reversed(earlier[-RECENT:]):
+        for outputs in () if fresh else reversed(earlier[-RECENT_RESULTS:]):
             if offer(outputs):
                 yield outputs
 
@@ -238,7 +238,7 @@ class Binder:
         elif node.stream.is_fluent and instance.exhausted and not instance.results:
             present = frozenset(fact for _, fact in node.fluents)
             words = (*node.guess[0], *(word for fact in present for word in fact[1:]))
-            if not any(word.startswith(MARK) for word in words):
+            if not any(word.startswith(PLACEHOLDER_MARK) for word in words):
                 call = (node.stream.name, node.guess[0])
                 self._experience.record_failing_state(
                     call, node.stream.declaration.fluents, present

@@ -6,9 +6,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from tamp.symbolic.algorithms.binding.call_order import ordered
 from tamp.symbolic.algorithms.binding.skeleton import CallNode, LiftedFact, Skeleton, Step, Term
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK, OptimisticInstance
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import (
+    PLACEHOLDER_MARK,
+    OptimisticInstance,
+)
 from tamp.symbolic.pddl.structs import Fact
-from tamp.symbolic.search.operators import ANY
+from tamp.symbolic.search.operators import ANY_OBJECT
 from tamp.symbolic.search.plan_trace import FinalState
 
 
@@ -112,7 +115,9 @@ class SkeletonBuilder:
         return term if isinstance(term, str) else self._find(term)
 
     def _lift(self, names: Sequence[str], local: Mapping[str, Term]) -> tuple[Term, ...]:
-        return tuple(local.get(name, name) if name.startswith(MARK) else name for name in names)
+        return tuple(
+            local.get(name, name) if name.startswith(PLACEHOLDER_MARK) else name for name in names
+        )
 
     # The walk.
 
@@ -127,7 +132,7 @@ class SkeletonBuilder:
 
         for argument in step.arguments:
             # no condition says what it is: any value of the stream that gives it will do
-            if argument.startswith(MARK):
+            if argument.startswith(PLACEHOLDER_MARK):
                 self._require_any(argument, local, number)
 
         for usage in step.usages:
@@ -190,7 +195,7 @@ class SkeletonBuilder:
             name
             for fact in derived
             for name in fact[1:]
-            if name.startswith(MARK) and name not in local
+            if name.startswith(PLACEHOLDER_MARK) and name not in local
         }
         if open_:
             for fact in sorted(state):
@@ -200,7 +205,7 @@ class SkeletonBuilder:
 
     def _bind_fluent(self, fact: Fact, local: dict[str, Term]) -> None:
         for name, term in zip(fact[1:], self._state.get(fact, fact[1:]), strict=True):
-            if name.startswith(MARK):
+            if name.startswith(PLACEHOLDER_MARK):
                 if name in local:
                     self._union(local[name], term)
                 else:
@@ -208,7 +213,7 @@ class SkeletonBuilder:
 
     def _certify(self, facts: Iterable[Fact], local: Mapping[str, Term]) -> None:
         for fact in sorted(facts):
-            if fact[0] != ANY:
+            if fact[0] != ANY_OBJECT:
                 self._certified.append((fact[0], self._lift(fact[1:], local)))
 
     def _require_any(self, name: str, local: dict[str, Term], number: int) -> None:
@@ -220,7 +225,7 @@ class SkeletonBuilder:
 
     def _require_static(self, fact: Fact, local: dict[str, Term], number: int) -> CallNode | None:
         """Have a fact certified; by which call, if it takes one."""
-        if fact[0] == ANY:
+        if fact[0] == ANY_OBJECT:
             self._require_any(fact[1], local, number)
             return None
         guess = self._chosen.get((number, fact)) or self._certifier(fact)
@@ -252,7 +257,7 @@ class SkeletonBuilder:
 
         symbols = (*guess.inputs, *guess.outputs)
         for name, term in zip(symbols, (*node.inputs, *node.outputs), strict=True):
-            if name.startswith(MARK):
+            if name.startswith(PLACEHOLDER_MARK):
                 if name in local:
                     self._union(local[name], term)
                 else:

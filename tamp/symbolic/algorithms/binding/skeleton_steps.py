@@ -12,7 +12,7 @@ from tamp.symbolic.search.operators import Guard, InstantiatedTask, Operator
 from tamp.symbolic.search.plan_trace import Trace, trace
 from tamp.symbolic.search.search import Plan
 
-NOGOOD = "(nogood)"
+NOGOOD_PREDICATE = "(nogood)"
 """The predicate of the facts that stand for what binding learned; no PDDL name looks like it."""
 
 
@@ -25,7 +25,7 @@ def with_nogoods(
     guards: dict[Fact, list[Guard]] = {}
     prices: dict[Fact, float] = {}
     for number, ((fact, present), record) in enumerate(experience.nogoods.items()):
-        name = (NOGOOD, str(number))
+        name = (NOGOOD_PREDICATE, str(number))
         prices[name] = record.price
         guards.setdefault(fact, []).append(Guard(present, name))
     operators = tuple(
@@ -54,7 +54,7 @@ def to_steps(
         usages = [
             Usage(guard.waived_by, guard.facts)
             for guard in step.guards
-            if guard.waived_by is not None and guard.waived_by[0] != NOGOOD
+            if guard.waived_by is not None and guard.waived_by[0] != NOGOOD_PREDICATE
         ]
 
         steps.append(

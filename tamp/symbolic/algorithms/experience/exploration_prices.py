@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from tamp.symbolic.algorithms.experience.stream_statistics import SCALE, Experience
+from tamp.symbolic.algorithms.experience.stream_statistics import PRICE_PER_FAILURE, Experience
 from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import OptimisticFacts
 from tamp.symbolic.pddl.structs import Fact
@@ -34,7 +34,8 @@ def exploration_prices(
         and fact not in tried
     }
     expected = {
-        name: SCALE * min(p.expected_failures, MAX_EXPECTED_FAILURES) for name, p in earlier.items()
+        name: PRICE_PER_FAILURE * min(p.expected_failures, MAX_EXPECTED_FAILURES)
+        for name, p in earlier.items()
     }
     if expected:
         for fact, instance in producers.items():

@@ -10,7 +10,7 @@ from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.axioms import stratify
 from tamp.symbolic.search.operators import NO_FACTS, Axiom, Facts, InstantiatedTask
 
-OTHER_STATE = "(elsewhere)"
+OTHER_STATE_PREDICATE = "(elsewhere)"
 """The predicate of derived facts that say that a state is another one; no PDDL name looks like
 it."""
 
@@ -72,7 +72,7 @@ def _other_states(
         changing = sorted(
             one for one in instantiated.reachable | instantiated.initial if one[0] in predicates
         )
-        heads = [(OTHER_STATE, str(number), str(place)) for place in range(len(states))]
+        heads = [(OTHER_STATE_PREDICATE, str(number), str(place)) for place in range(len(states))]
         others[call] = frozenset(heads)
 
         for head, state in zip(heads, states, strict=True):
@@ -104,7 +104,7 @@ def _needs(
             needs[fact] = others[producers[0].call]
             continue
 
-        head = (OTHER_STATE, *fact)
+        head = (OTHER_STATE_PREDICATE, *fact)
         needs[fact] = frozenset((head,))
         axioms += [Axiom(head, others[producer.call], NO_FACTS) for producer in producers]
     return needs, axioms

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
 from tamp.symbolic.algorithms.experience.stream_statistics import Experience, FailureRecord
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
-from tamp.symbolic.pddl.relations import SAMPLE
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import PLACEHOLDER_MARK
+from tamp.symbolic.pddl.relations import SAMPLE_PREFIX
 from tamp.symbolic.pddl.structs import Fact
 
 MAX_SKELETONS = 100
@@ -144,7 +144,7 @@ def _label(
         if user == number and not set(node.guess[1]).isdisjoint(step.arguments):
             further = [thing for thing in _things(node.guess[0], names) if thing not in things]
             if further:
-                relation = node.stream.name.removeprefix(SAMPLE)
+                relation = node.stream.name.removeprefix(SAMPLE_PREFIX)
                 text += (
                     f" {relation} {' '.join(further)}"
                     if relation != node.stream.name
@@ -160,5 +160,7 @@ def _label(
 
 def _things(words: Iterable[str], names: Mapping[str, object]) -> list[str]:
     return [
-        word for word in words if not word.startswith(MARK) and isinstance(names.get(word), str)
+        word
+        for word in words
+        if not word.startswith(PLACEHOLDER_MARK) and isinstance(names.get(word), str)
     ]

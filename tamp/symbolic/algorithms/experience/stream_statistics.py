@@ -54,10 +54,10 @@ class FailureRecord:
     @property
     def price(self) -> float:
         """Price of relying on it, in units of the actions' costs."""
-        return SCALE * self.expected_failures
+        return PRICE_PER_FAILURE * self.expected_failures
 
 
-SCALE = 0.4
+PRICE_PER_FAILURE = 0.4
 """An expected failure costs this much of an action of cost 1: about ten failures outweigh moving a
 body away."""
 

@@ -17,7 +17,7 @@ from tamp.symbolic.algorithms.explanation.goal_conflicts import (
 )
 from tamp.symbolic.algorithms.explanation.kept import kept_from
 from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import PLACEHOLDER_MARK
 from tamp.symbolic.algorithms.result import SkeletonAttempt, StreamTask
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.operators import InstantiatedTask, Meaning
@@ -245,7 +245,7 @@ def _failed(experience: Experience, skeleton: Skeleton) -> list[str]:
 def _row(
     skeleton: Skeleton, node: CallNode, present: frozenset[Fact], record: FailureRecord
 ) -> str:
-    objects = ", ".join(name for name in node.guess[0] if not name.startswith(MARK))
+    objects = ", ".join(name for name in node.guess[0] if not name.startswith(PLACEHOLDER_MARK))
     reasons = _counted(record.reasons)
     tries = record.failures + record.successes
     place = (

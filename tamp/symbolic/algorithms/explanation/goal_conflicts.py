@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 from itertools import combinations
 
-from tamp.symbolic.algorithms.optimistic.optimistic_facts import MARK
+from tamp.symbolic.algorithms.optimistic.optimistic_facts import PLACEHOLDER_MARK
 from tamp.symbolic.pddl.structs import And, Fact, Formula, Not
 from tamp.symbolic.search.goal_ways import goal_parts
 from tamp.symbolic.search.instantiation.meanings import meaning_of
@@ -55,7 +55,7 @@ def minimal_unsolvable_goals(
 
 
 def _has_placeholder(fact: Fact) -> bool:
-    return any(word.startswith(MARK) for word in fact)
+    return any(word.startswith(PLACEHOLDER_MARK) for word in fact)
 
 
 def _conjuncts(

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from tamp.symbolic.algorithms.bound_stream import BoundStream, substitute
 from tamp.symbolic.pddl.structs import Atom, Fact
 
-MARK = "#"
+PLACEHOLDER_MARK = "#"
 """Placeholders begin with it: "#p3" stands for any pose that its stream may yield."""
 
 
@@ -41,7 +41,7 @@ class OptimisticInstance:
     @property
     def has_real_inputs(self) -> bool:
         """Return whether all inputs are real, so that what its function says of them is final."""
-        return not any(name.startswith(MARK) for name in self.inputs)
+        return not any(name.startswith(PLACEHOLDER_MARK) for name in self.inputs)
 
 
 class Placeholders(NamedTuple):

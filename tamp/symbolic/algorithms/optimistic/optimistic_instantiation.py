@@ -9,7 +9,7 @@ from tamp.symbolic.algorithms.bound_stream import BoundStream, substitute
 from tamp.symbolic.algorithms.optimistic.assumable_tests import atoms_of
 from tamp.symbolic.algorithms.optimistic.fact_index import FactIndex, unify
 from tamp.symbolic.algorithms.optimistic.optimistic_facts import (
-    MARK,
+    PLACEHOLDER_MARK,
     OptimisticFacts,
     OptimisticInstance,
     Placeholders,
@@ -175,7 +175,7 @@ class _Instantiation:
         declaration = stream.declaration
         outputs: list[str] = []
         for name in declaration.outputs:
-            prefix = MARK + name.lstrip("?").rstrip("0123456789")
+            prefix = PLACEHOLDER_MARK + name.lstrip("?").rstrip("0123456789")
             self._counts[prefix] += 1
             outputs.append(f"{prefix}{self._counts[prefix]}")
 

@@ -17,7 +17,7 @@ from tamp.symbolic.search.instantiation.normal_form import (
     Types,
     type_relation,
 )
-from tamp.symbolic.search.operators import ANY
+from tamp.symbolic.search.operators import ANY_OBJECT
 
 Assumed = Mapping[str, Sequence[tuple[str, tuple[int, ...]]]]
 """Predicates that are taken to hold, each with the static facts that have to be known for that:
@@ -185,7 +185,9 @@ class PredicateKinds:
         """
         named = (atom for atom in literals.positive if not atom.predicate.startswith("type "))
         covered = {term for atom in named for term in atom.terms}
-        return tuple(Atom(ANY, (name,)) for name, _ in literals.variables if name not in covered)
+        return tuple(
+            Atom(ANY_OBJECT, (name,)) for name, _ in literals.variables if name not in covered
+        )
 
     def type_atom(self, variable: str, types: Types) -> Atom:
         """Return the atom that says that the variable has one of the types; its relation is made

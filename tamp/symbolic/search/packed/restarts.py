@@ -14,11 +14,11 @@ from random import Random
 from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.packed.search import PackedSearch, Stalled
 
-STALLED = 3000
+STALLED_STATES = 3000
 """Expanded states without progress after which the first search counts as stalled: one that goes
 down steadily, if slowly, is not disturbed."""
 
-UNIT = 3000
+SHORTEST_RESTART_STATES = 3000
 """Such states of the shortest restart."""
 
 
@@ -55,13 +55,13 @@ def greedy_with_restarts(search: SearchSpace, names: Sequence[str], seed: int = 
     """
     first = PackedSearch(search, names, math.inf)
     try:
-        return first.plan(STALLED)
+        return first.plan(STALLED_STATES)
     except Stalled:
         pass
 
     rng = Random(seed)
     for number, way in zip(count(1), _turns(names), strict=False):
-        states = UNIT * luby(number)
+        states = SHORTEST_RESTART_STATES * luby(number)
         try:
             if way is None:
                 return first.plan(states)

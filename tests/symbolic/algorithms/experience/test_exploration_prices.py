@@ -9,7 +9,7 @@ from tamp.symbolic.algorithms.experience.exploration_prices import (
     UNTRIED_TEST_PRICE,
     exploration_prices,
 )
-from tamp.symbolic.algorithms.experience.stream_statistics import SCALE, Experience
+from tamp.symbolic.algorithms.experience.stream_statistics import PRICE_PER_FAILURE, Experience
 from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 from tests.symbolic.algorithms.binding.shelf import planned
 
@@ -39,8 +39,11 @@ def test_earlier_runs_charge_for_failures_up_to_a_limit(failures: int, expected:
     prices = exploration_prices(
         run.optimistic.facts, Experience(), {"sample-pose": Posterior(1, failures)}
     )
-    assert prices == {DRAWN: pytest.approx(SCALE * expected), TESTED: UNTRIED_TEST_PRICE}
+    assert prices == {
+        DRAWN: pytest.approx(PRICE_PER_FAILURE * expected),
+        TESTED: UNTRIED_TEST_PRICE,
+    }
     prices = exploration_prices(
         run.optimistic.facts, Experience(), {"test-clear": Posterior(1, failures)}
     )
-    assert prices == {TESTED: pytest.approx(UNTRIED_TEST_PRICE + SCALE * expected)}
+    assert prices == {TESTED: pytest.approx(UNTRIED_TEST_PRICE + PRICE_PER_FAILURE * expected)}

@@ -9,7 +9,7 @@ import pytest
 
 from tamp.symbolic.algorithms.bound_stream import BoundStream
 from tamp.symbolic.algorithms.experience.failing_states import (
-    OTHER_STATE,
+    OTHER_STATE_PREDICATE,
     avoid_failing_states,
     choose_instances,
 )
@@ -118,7 +118,7 @@ def test_facts_of_other_predicates_say_nothing() -> None:
 
 
 def test_made_up_predicates_look_like_no_pddl_name() -> None:
-    assert OTHER_STATE.startswith("(")
+    assert OTHER_STATE_PREDICATE.startswith("(")
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,11 @@ from __future__ import annotations
 import pytest
 
 from tamp.stream import Rejection
-from tamp.symbolic.algorithms.experience.stream_statistics import SCALE, Experience, FailureRecord
+from tamp.symbolic.algorithms.experience.stream_statistics import (
+    PRICE_PER_FAILURE,
+    Experience,
+    FailureRecord,
+)
 
 CLEAR = ("clear", "tea", "p1")
 AT = ("at", "mug", "p2")
@@ -18,14 +22,14 @@ AT = ("at", "mug", "p2")
 def test_failures_to_expect(successes: int, failures: int, expected: float) -> None:
     record = FailureRecord(successes, failures)
     assert record.expected_failures == expected
-    assert record.price == pytest.approx(SCALE * expected)
+    assert record.price == pytest.approx(PRICE_PER_FAILURE * expected)
 
 
 def test_only_what_fails_more_often_than_not_has_a_price() -> None:
     experience = Experience()
     experience.record(CLEAR, Rejection.hits("mug"))
     experience.record(("pose", "tea", "p1"), None)
-    assert experience.prices() == {CLEAR: pytest.approx(SCALE)}
+    assert experience.prices() == {CLEAR: pytest.approx(PRICE_PER_FAILURE)}
     experience.record(CLEAR, None)
     assert experience.prices() == {}
     assert experience.facts[CLEAR].reasons == {"hits mug": 1}

@@ -6,7 +6,7 @@ import pytest
 
 from tamp.symbolic.pddl.structs import Fact
 from tamp.symbolic.search.instantiation.effects import EffectTemplates, lifted_effects
-from tamp.symbolic.search.operators import ANY, ConditionalEffect, Facts
+from tamp.symbolic.search.operators import ANY_OBJECT, ConditionalEffect, Facts
 from tests.symbolic.search.instantiation.small import fact, facts, parts
 
 PLACES = [("a",), ("b",)]
@@ -52,8 +52,8 @@ def test_a_universal_effect_is_expanded_over_the_objects_of_its_type() -> None:
     added, deleted, conditional = effect_of("(forall (?x - thing) (at ?x ?p))", "b")
     assert (added, deleted) == (frozenset(), frozenset())
     assert [(one.static, one.added) for one in conditional] == [
-        ({(ANY, "box")}, facts("at box b")),
-        ({(ANY, "cup")}, facts("at cup b")),
+        ({(ANY_OBJECT, "box")}, facts("at box b")),
+        ({(ANY_OBJECT, "cup")}, facts("at cup b")),
     ]
 
 

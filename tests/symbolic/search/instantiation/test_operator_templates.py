@@ -17,7 +17,7 @@ from tamp.symbolic.search.instantiation.operator_templates import (
     effect_rules,
 )
 from tamp.symbolic.search.instantiation.predicate_kinds import NOTHING, Assumed
-from tamp.symbolic.search.operators import ANY, Guard
+from tamp.symbolic.search.operators import ANY_OBJECT, Guard
 from tests.symbolic.search.instantiation.small import Parts, fact, facts, parts
 
 GO = """(:action go :parameters (?x - thing ?p ?q - place)
@@ -126,7 +126,7 @@ def test_static_facts_are_those_that_conditions_name_and_objects_that_nothing_na
     )  # fmt: skip
     one = made.instantiate(("box", "a", "b", "c", "cup"))
     assert one is not None and one.arguments == ROW
-    assert one.static == {fact("near a b"), fact("near b c"), (ANY, "cup")}
+    assert one.static == {fact("near a b"), fact("near b c"), (ANY_OBJECT, "cup")}
 
 
 def test_costs_are_numbers_or_looked_up_and_renewed() -> None:

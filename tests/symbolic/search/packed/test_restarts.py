@@ -49,7 +49,7 @@ def test_luby_numbers() -> None:
 
 
 def test_without_a_stall_there_is_one_search(monkeypatch: pytest.MonkeyPatch) -> None:
-    assert asked(monkeypatch, 1, ("ff",)) == [(1, ("ff",), False, 0, restarts.STALLED)]
+    assert asked(monkeypatch, 1, ("ff",)) == [(1, ("ff",), False, 0, restarts.STALLED_STATES)]
 
 
 def test_ways_of_two_heuristics_are_taken_in_turn_and_the_first_search_goes_on(
@@ -62,7 +62,7 @@ def test_ways_of_two_heuristics_are_taken_in_turn_and_the_first_search_goes_on(
         (2, both, False), (3, both, True), (4, ("ff",), False), (1, both, False),
         (5, both, False), (6, both, True), (7, ("ff",), False), (1, both, False),
     ]  # fmt: skip
-    unit = restarts.UNIT
+    unit = restarts.SHORTEST_RESTART_STATES
     assert [patience for *_, patience in found[1:]] == [
         unit, unit, 2 * unit, unit, unit, 2 * unit, 4 * unit, unit,
     ]  # fmt: skip

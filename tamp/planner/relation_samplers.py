@@ -21,7 +21,7 @@ from tamp.geometric.samplers.registry import SAMPLERS
 from tamp.geometric.samplers.sampler import Generator
 from tamp.geometric.scene.classifier import Classifier, NoClassifier
 from tamp.geometric.streams.user_relations import sample_relation, test_relation
-from tamp.symbolic.pddl.relations import SAMPLES, TESTS, relation_of
+from tamp.symbolic.pddl.relations import SAMPLE_SUFFIXES, TEST_SUFFIXES, relation_of
 from tamp.symbolic.pddl.structs import Domain, Stream, StreamFile
 
 BORNE = "borne"
@@ -120,11 +120,13 @@ class Served:
             if name not in SAMPLERS:
                 judge = None if f"test-{name}" in streams else self._judge(name, declared, domain)
                 serve = partial(sample_relation, relation=name, generator=generator, judge=judge)
-                for stream in {f"sample-{name}{suffix}" for suffix in SAMPLES} & streams.keys():
+                for stream in {
+                    f"sample-{name}{suffix}" for suffix in SAMPLE_SUFFIXES
+                } & streams.keys():
                     functions[stream] = partial(serve, below=_below(streams[stream]))
 
         for name, classifier in self.classifiers.items():
-            for suffix in TESTS:
+            for suffix in TEST_SUFFIXES:
                 functions[f"test-{name}{suffix}"] = partial(test_relation, classifier=classifier)
 
         for name, why in self.undecided.items():

@@ -11,7 +11,7 @@ import pytest
 
 from tamp.errors import InputError
 from tamp.geometric.samplers.registry import SAMPLERS
-from tamp.planner.served import Served
+from tamp.planner.relation_samplers import Served
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 
 FIRST = next(iter(SAMPLERS["on"]))

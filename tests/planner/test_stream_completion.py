@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tamp.planner.rested_on import saying_where_poses_rest
+from tamp.planner.stream_completion import saying_where_poses_rest
 from tamp.symbolic.pddl.parser import parse_domain, parse_streams
 from tamp.symbolic.pddl.structs import Fact
 

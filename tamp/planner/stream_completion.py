@@ -6,7 +6,7 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from tamp.planner.movable_places import carries
-from tamp.symbolic.pddl.relations import SAMPLES
+from tamp.symbolic.pddl.relations import SAMPLE_SUFFIXES
 from tamp.symbolic.pddl.structs import Atom, Domain, Stream, StreamFile
 
 SUPPORTED = "supported"
@@ -32,7 +32,9 @@ def saying_where_poses_rest(
     """
     if SUPPORTED not in domain.predicates or carries(domain):
         return declared
-    names = {f"sample-{name}{suffix}" for name in relations for suffix in SAMPLES} - {*given}
+    names = {f"sample-{name}{suffix}" for name in relations for suffix in SAMPLE_SUFFIXES} - {
+        *given
+    }
     return replace(
         declared,
         streams=tuple(
