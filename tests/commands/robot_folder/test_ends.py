@@ -196,6 +196,16 @@ def test_fingers_are_counted_from_where_their_pads_meet(described, name: str) ->
 
 
 @pytest.mark.parametrize(
+    ("says", "speed"), [("", 0.05), ('velocity="0"', 0.05), ('velocity="0.03"', 0.03), ('velocity="4"', 0.1)]
+)  # fmt: skip
+def test_fingers_move_as_fast_as_they_can_and_slowly_where_nobody_says(
+    described, says: str, speed: float
+) -> None:
+    slow = sliding(*SLIDES["both along y"]).replace('velocity="0.1"', says)
+    assert [joint.velocity for joint in hand_of(described(slow)).fingers] == [speed, speed]
+
+
+@pytest.mark.parametrize(
     ("axes", "ranges", "at", "says"),
     [
         ((1, 1), ("0 0.04", "0 0.04"), (0.005, -0.005), "in each other at the end .* cannot close"),
