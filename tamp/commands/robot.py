@@ -19,6 +19,7 @@ from tamp.system.progress import Progress, say
 from tamp.system.scratch import scratch_folder
 
 if TYPE_CHECKING:
+    from tamp.commands.robot_folder.ends import End
     from tamp.commands.robot_folder.wanted import Wanted
 
 OURS = "the fingers of the URDF do not close: a gripper of ours takes their place"
@@ -179,6 +180,10 @@ def _wanted(options: Make, urdf: Path, file: Path | None = None) -> Wanted:
     from tamp.commands.robot_folder.srdf_search import srdf_for
     from tamp.commands.robot_folder.wanted import Wanted
 
+    def own(end: End) -> bool:
+        chosen = Wanted(urdf, end.tip, options.out, base=end.base, fingers=end.fingers)
+        return end.fingers is not None and closes(description, chosen)
+
     (base, tip), found = options.arm or ("", ""), None
     description = read_description(urdf)
     srdf, remarks = srdf_for(description, options.srdf, file or urdf)
@@ -186,7 +191,7 @@ def _wanted(options: Make, urdf: Path, file: Path | None = None) -> Wanted:
         end, said = None, ""
         if srdf is not None and len(ends(description)) != 1:
             end, said = choose_arm(srdf, description)
-        end = choose_end(description) if end is None else end
+        end = choose_end(description, own) if end is None else end
         base, tip, found = end.base, end.tip, end.fingers
         remarks = (*remarks, said) if said else remarks
     asked = options.gripper is None and options.suction is None and options.axis is None

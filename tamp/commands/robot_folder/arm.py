@@ -50,7 +50,8 @@ class Arm:
         T_last_tip: The tip in the last joint's frame.
         T_root_foot: The foot in the frame of the URDF's root.
         velocity, effort: Of each joint.
-        dropped: Links of a gripper beside the tip that another one takes the place of.
+        dropped: Links of a gripper beside the tip, or the tip as its body, that another one takes
+            the place of.
     """
 
     joints: tuple[Joint, ...]
@@ -119,7 +120,13 @@ def find_arm(
         T_root_foot=Pose.from_matrix(clean(np.linalg.inv(place[root][1]))),
         velocity=tuple(joint.velocity or 1.0 for joint in joints),
         effort=tuple(description.efforts[joint.name] or 100.0 for joint in joints),
-        dropped=tuple(sorted(name for name in beside if description.links[name])),
+        dropped=tuple(
+            sorted(
+                name
+                for name in {*beside, *([tip] if ours and bare else [])}
+                if description.links[name]
+            )
+        ),
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from tamp.commands.robot_folder.arm import FEWEST, outwards
@@ -45,8 +45,12 @@ class End:
     turning: bool = False
 
 
-def choose_end(description: Description) -> End:
+def choose_end(description: Description, closes: Callable[[End], bool] = lambda _: True) -> End:
     """Return the only end of a URDF with one chain.
+
+    Args:
+        description: The URDF.
+        closes: Whether the fingers of an end make a gripper; only such are named in a choice.
 
     Raises:
         InputError: There is none, or which there are.
@@ -59,7 +63,9 @@ def choose_end(description: Description) -> End:
             "no chain of joints that move", file=description.file,
             remedy="A URDF of an arm is expected; expand it with xacro first if it has macros",
         )  # fmt: skip
-    shown = ", ".join(f"--arm {end.base} {end.tip}{_own(end)}" for end in found[:SHOWN])
+    shown = ", ".join(
+        f"--arm {end.base} {end.tip}{_own(end) if closes(end) else ''}" for end in found[:SHOWN]
+    )
     raise InputError(
         f"the URDF branches: {len(found)} chains end somewhere", file=description.file,
         remedy=f"Say which is the arm: {shown}",

@@ -40,6 +40,9 @@ MOST_VACUUM, USUAL_VACUUM = 101_325.0, 60_000.0
 CUP_TILT_RAD = math.radians(5.0)
 """Radians by which what a cup seals on may lean against it."""
 
+USUAL_SPEED = 0.05
+"""Metres a second of a finger of which nobody says more."""
+
 STALK = 0.06
 """Metres from the palm to the rim of our cup."""
 
@@ -59,7 +62,6 @@ class Gripper:
         T_hand_tool: The tool in the hand: z out of it, y the closing direction.
         opening: The largest, metres.
         force: Newtons with which each finger presses.
-        speed: Metres a second of each finger.
         mass: Kilograms.
         suction: The cup.
     """
@@ -71,7 +73,6 @@ class Gripper:
     T_hand_tool: Pose
     opening: float
     force: float
-    speed: float
     mass: float = 0.9
     suction: Suction | None = None
 
@@ -103,13 +104,12 @@ def two_fingers(opening: float, force: float, T_tip_hand: Pose) -> Gripper:
         hulls.append((_box(FINGER, centre),))
         fingers.append(
             Joint(f"{name}_finger_joint", "prismatic", "hand", f"{name}_finger",
-                  Pose((0.0, 0.0, out)), (0.0, side, 0.0), 0.0, opening / 2, 0.05)
+                  Pose((0.0, 0.0, out)), (0.0, side, 0.0), 0.0, opening / 2, USUAL_SPEED)
         )  # fmt: skip
     tool = Pose((0.0, 0.0, out + FINGER[2] - TIP))
     return Gripper(
-        (palm,), (fingers[0], fingers[1]), (hulls[0], hulls[1]), T_tip_hand, tool, opening, force,
-        0.05,
-    )  # fmt: skip
+        (palm,), (fingers[0], fingers[1]), (hulls[0], hulls[1]), T_tip_hand, tool, opening, force
+    )
 
 
 def suction_cup(radius: float, force: float | None, T_tip_hand: Pose) -> Gripper:
@@ -142,7 +142,7 @@ def suction_cup(radius: float, force: float | None, T_tip_hand: Pose) -> Gripper
     cup = hull_of(np.concatenate(ends), "gripper")
     return Gripper(
         (palm, cup), (), (), T_tip_hand, Pose((0.0, 0.0, PALM[2] + STALK)), 0.0,
-        round(USUAL_VACUUM * area, 1) if force is None else force, 0.0, 0.6,
+        round(USUAL_VACUUM * area, 1) if force is None else force, 0.6,
         Suction(radius, CUP_TILT_RAD),
     )  # fmt: skip
 

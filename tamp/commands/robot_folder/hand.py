@@ -7,13 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from tamp.commands.robot_folder.arm import LinkGroup, outwards
-from tamp.commands.robot_folder.description import Description
+from tamp.commands.robot_folder.arm import GRIPPER, LinkGroup, outwards
+from tamp.commands.robot_folder.description import MOVING, Description
 from tamp.commands.robot_folder.joint_motion import stands
 from tamp.errors import InputError
 from tamp.geometric.loading.urdf_link import Element
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
+
+BODIES = (*GRIPPER, "hand", "palm")
+"""Words in the names of links that are bodies of grippers."""
 
 
 def tip_is_hand(description: Description, tip: str, fingers: Sequence[Joint]) -> bool:
@@ -27,6 +30,16 @@ def tip_is_hand(description: Description, tip: str, fingers: Sequence[Joint]) ->
         elif joint.child not in below and description.links[joint.child]:
             return False
     return True
+
+
+def tip_is_replaced(description: Description, tip: str) -> bool:
+    """Check whether the tip is the body of a gripper of which a jaw hangs on it: one of ours takes
+    the place of both.
+    """
+    carries = any(
+        joint.parent == tip and joint.kind in MOVING for joint in description.joints.values()
+    )
+    return carries and any(word in tip.lower() for word in BODIES)
 
 
 def find_hand(

@@ -18,7 +18,7 @@ from tamp.commands.robot_folder.column import on_column
 from tamp.commands.robot_folder.convex import CollisionElement, joined, pieces, solids
 from tamp.commands.robot_folder.description import read_description
 from tamp.commands.robot_folder.gripper import Gripper
-from tamp.commands.robot_folder.hand import tip_is_hand
+from tamp.commands.robot_folder.hand import tip_is_hand, tip_is_replaced
 from tamp.commands.robot_folder.home import home
 from tamp.commands.robot_folder.kept_steps import kept, kept_hulls
 from tamp.commands.robot_folder.reach_table import table
@@ -72,7 +72,11 @@ def make(wanted: Wanted, told: Told) -> Made:
     description = read_description(file)
     base = wanted.base or description.root
     fingers = named_fingers(description, wanted)
-    bare = fingers is not None and tip_is_hand(description, wanted.tip, fingers)
+    bare = (
+        tip_is_replaced(description, wanted.tip)
+        if fingers is None
+        else tip_is_hand(description, wanted.tip, fingers)
+    )
     arm = find_arm(description, base, wanted.tip, wanted.fixed, fingers is None, bare)
 
     told("hulls", 0.0)

@@ -125,11 +125,16 @@ def meetings(robot: Robot, told: Callable[[float], None]) -> dict[Pair, int]:
 
 def allowed_pairs(robot: Robot, met: Mapping[Pair, int]) -> tuple[frozenset[Pair], tuple[str, ...]]:
     """Find the pairs that plans need not check: adjacent ones, and those that met never, or mostly.
+    What meets the base in some states and not in all is checked: it is the arm that goes there.
 
     Returns:
         The pairs, and a sentence about each that met mostly but not always.
     """
-    mostly = {pair: count / STATES for pair, count in met.items() if count > MOSTLY * STATES}
+    mostly = {
+        pair: count / STATES
+        for pair, count in met.items()
+        if count == STATES or (count > MOSTLY * STATES and robot.base not in pair)
+    }
     remarks = [
         f"{first} and {second} meet in {share:.0%} of states: taken for neighbours, not checked"
         for (first, second), share in sorted(mostly.items())

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tamp.commands.robot_folder.gripper import TIP, Gripper
+from tamp.commands.robot_folder.gripper import TIP, USUAL_SPEED, Gripper
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Array, Pose
@@ -22,6 +22,9 @@ CENTRED = 0.003
 """Metres that fingers may be beside their joints and count as in the middle of them."""
 
 OURS = "Leave --gripper out, with --arm: one of ours takes its place"
+
+FASTEST = 0.1
+"""Metres a second of a finger, whatever its description says."""
 
 LEAST = 0.005
 """Metres that a gripper opens at least."""
@@ -67,7 +70,10 @@ def own_fingers(
             remedy=OURS,
         )
 
-    met = tuple(_moved(joint, -gap / 2) for joint in outward)
+    met = tuple(
+        replace(_moved(joint, -gap / 2), velocity=min(joint.velocity or USUAL_SPEED, FASTEST))
+        for joint in outward
+    )
     widest = 2 * (min(joint.upper for joint in outward) + gap / 2)
     if widest < LEAST:
         raise InputError(f"the fingers {names} cannot open: they move {1000 * widest:.1f} mm")
@@ -76,10 +82,9 @@ def own_fingers(
 
     origins = np.mean([joint.origin.position for joint in met], axis=0)
     T = _tool((inner + other) / 2, closing, np.concatenate(corners), origins, hand)
-    speed = min(joint.velocity or 0.05 for joint in joints)
     return Gripper(
         hand, (met[0], met[1]), finger_hulls, T_tip_hand, T,
-        widest if opening is None else opening, force, min(speed, 0.1),
+        widest if opening is None else opening, force,
     )  # fmt: skip
 
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import math
 import re
-import zipfile
 from collections.abc import Mapping
 from pathlib import Path
-
-import numpy as np
 
 import tamp.geometric.robot
 from tamp.errors import InputError
@@ -18,6 +16,7 @@ from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.robot.arms import Mobile, as_arm, joined
 from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
+from tamp.geometric.robot.robot_arrays import damaged, numbers, read_arrays
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part
@@ -140,9 +139,10 @@ def _several(root: YamlNode, folder: Path) -> Robot:
 def _beside(node: YamlNode, folder: Path) -> Path:
     """Find the folder of an arm's robot: from here, or a shipped one by its name."""
     places = (folder / node.text(), ASSETS / node.text())
-    for place in places:
-        if (place / ROBOT_FILE).is_file() and place.resolve() != folder.resolve():
-            return place.resolve()
+    with contextlib.suppress(OSError):  # a name too long to be one
+        for place in places:
+            if (place / ROBOT_FILE).is_file() and place.resolve() != folder.resolve():
+                return place.resolve()
     raise node.error(
         f"no robot's folder '{node.text()}'",
         remedy="Say where it is, from this folder, or a robot that comes with tamp",
@@ -218,22 +218,18 @@ def _links(folder: Path, names: list[str], base: Part) -> tuple[Link, ...]:
 
 def _hulls(file: Path) -> dict[str, list[Hull]]:
     """Read the hulls of each link, in order."""
-    found: dict[str, list[Hull]] = {}
-    try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
-            for key in arrays.files:
-                name, _, what = key.rpartition("/")
-                if what == "vertices":
-                    vertices, faces = arrays[key], arrays[f"{name}/faces"]
-                    vertices.flags.writeable = faces.flags.writeable = False
-                    found.setdefault(name.rpartition("/")[0], []).append(Hull(vertices, faces))
-    except FileNotFoundError:
-        raise InputError(f"no robot: {GEOMETRY_FILE} is missing", file=file.parent) from None
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        what = " ".join(str(error).split())
-        raise InputError(
-            f"damaged: {what}", file=file, remedy="Make the robot again with tamp-robot"
-        ) from None
+    if not file.is_file():
+        raise InputError(f"no robot: {GEOMETRY_FILE} is missing", file=file.parent)
+    arrays, found = read_arrays(file), dict[str, list[Hull]]()
+    for key in arrays:
+        name, _, what = key.rpartition("/")
+        if what == "vertices":
+            vertices = numbers(arrays, key, file, (None, 3), "f")
+            faces = numbers(arrays, f"{name}/faces", file, (None, 3), "iu")
+            if faces.min() < 0 or faces.max() >= len(vertices):
+                raise damaged(file, f"'{name}/faces' names vertices that are not there")
+            vertices.flags.writeable = faces.flags.writeable = False
+            found.setdefault(name.rpartition("/")[0], []).append(Hull(vertices, faces))
     return found
 
 
@@ -255,15 +251,17 @@ def _urdf(node: YamlNode, folder: Path) -> Path:
     """
     text = node.text()
     inside = folder / text
-    if inside.is_file():
-        return inside
+    with contextlib.suppress(OSError):  # a name too long to be one
+        if inside.is_file():
+            return inside
     package, _, path = text.partition("/")
     # Found without importing: pybullet prints at import.
     spec = importlib.util.find_spec(package) if package.isidentifier() else None
     if spec is not None and spec.origin is not None:
         file = Path(spec.origin).parent / path
-        if file.is_file():
-            return file
+        with contextlib.suppress(OSError):
+            if file.is_file():
+                return file
     wheel = {"pybullet_data": "pybullet"}.get(package)
     raise node.error(
         f"the robot '{folder.name}' needs {text}, which is not there",

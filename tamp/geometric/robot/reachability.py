@@ -5,7 +5,6 @@ table.
 from __future__ import annotations
 
 import math
-import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.robot_arrays import REMEDY, damaged, numbers, read_arrays
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
@@ -44,21 +44,24 @@ def _read(file: Path) -> dict[str, Array]:
     Raises:
         InputError: It is missing or damaged.
     """
-    remedy = "Make the robot again: tamp-robot make"
     if not file.is_file():
-        raise InputError("the robot's reachability table is missing", file=file, remedy=remedy)
-    try:
-        with file.open("rb") as stream, np.load(stream, allow_pickle=False) as arrays:
-            table: dict[str, Array] = {
-                name: arrays[name]
-                for name in ("heights", "directions", "rotations", "distances", "counts")
-            }
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        what = " ".join(str(error).split())
-        raise InputError(f"damaged: {what}", file=file, remedy=remedy) from None
+        raise InputError("the robot's reachability table is missing", file=file, remedy=REMEDY)
+    arrays = read_arrays(file)
+    table = {
+        name: numbers(arrays, name, file, shape)
+        for name, shape in (
+            ("heights", (None,)), ("directions", (None, 3)), ("rotations", (None, 3, 3)),
+            ("distances", (None,)), ("counts", (None, None, None, None)),
+        )
+    }  # fmt: skip
     shape = tuple(len(table[name]) for name in ("heights", "directions", "distances"))
-    if table["counts"].ndim != 4 or table["counts"].shape[:3] != shape:
-        raise InputError("damaged: its arrays do not fit together", file=file, remedy=remedy)
+    fits = table["counts"].shape[:3] == shape and len(table["rotations"]) == shape[1]
+    rising = all(
+        len(table[name]) > 1 and (np.diff(table[name]) > 0).all()
+        for name in ("heights", "distances")
+    )
+    if not fits or not rising or (table["counts"] < 0).any():
+        raise damaged(file, "its arrays do not fit together")
     return table
 
 

@@ -6,9 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from tamp.geometric.robot.robot import Robot
+from tamp.geometric.robot.robot_arrays import damaged, numbers, read_arrays
 from tamp.geometric.scene.pose import Array
 
 if TYPE_CHECKING:
@@ -20,6 +19,9 @@ def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"]
     and its slack.
 
     For a part without a cover the kernels use its bounding sphere and the exact test alone.
+
+    Raises:
+        InputError: The file of covers is damaged.
     """
     covers = {}
     for prefix, folder in robot.described or (("", robot.folder),):
@@ -36,6 +38,13 @@ def link_covers(robot: Robot) -> dict[tuple[str, int], tuple[Float[Array, "_ 4"]
 @lru_cache(maxsize=8)
 def _read(file: Path, _: int) -> dict[str, tuple[Array, float]]:
     """Read all covers in a file as it was at a time; robots of several arms are made often."""
-    with np.load(file, allow_pickle=False) as arrays:
-        keys = [name.removesuffix("/spheres") for name in arrays.files if name.endswith("/spheres")]
-        return {key: (arrays[f"{key}/spheres"], float(arrays[f"{key}/slack"])) for key in keys}
+    arrays, found = read_arrays(file), dict[str, tuple[Array, float]]()
+    for name in arrays:
+        key = name.removesuffix("/spheres")
+        if key != name:
+            spheres = numbers(arrays, name, file, (None, 4), "f")
+            slack = float(numbers(arrays, f"{key}/slack", file, (), "f"))
+            if (spheres[:, 3] <= 0.0).any() or slack < 0.0:
+                raise damaged(file, f"'{name}' are no spheres")
+            found[key] = spheres, slack
+    return found

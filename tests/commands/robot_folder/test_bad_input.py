@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import re
 import shutil
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -122,6 +124,29 @@ def yaml(old: str, new: str):
     return change
 
 
+def arrays(part: str, name: str, change):
+    """Change the first array of a name in one of the folder's files."""
+
+    def spoil(folder: Path) -> None:
+        file = folder / f"{part}.npz"
+        with np.load(file) as kept:
+            found = {key: kept[key] for key in kept.files}
+        key = next(key for key in found if key.rpartition("/")[2] == name)
+        np.savez(file, **{**found, key: change(found[key])})
+
+    return spoil
+
+
+def bomb(folder: Path) -> None:
+    """Write an array that says to be larger than any memory."""
+    header = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        header, {"descr": "<f8", "fortran_order": False, "shape": (10**13,)}
+    )
+    with zipfile.ZipFile(folder / "reachability.npz", "a") as packed:
+        packed.writestr("more.npy", header.getvalue() + b"0" * 80)
+
+
 DAMAGED = {
     "version": (yaml("version: 1", "version: 7"), r"robot.yaml:3: version: version 7 .*only 1.*Make it again"),
     "format": (yaml("format: tamp-robot", "format: other"), r"not a robot"),
@@ -134,7 +159,24 @@ DAMAGED = {
         lambda folder: (folder / "geometry.npz").write_bytes((folder / "geometry.npz").read_bytes()[:5000]),
         r"geometry.npz: damaged.*Make the robot again",
     ),
+    **{
+        f"{part}-{what}": (arrays(part, name, change), rf"{part}.npz: damaged: .*{says}.*Make the robot again")
+        for part, name, what, change, says in (
+            ("geometry", "spheres", "flat", lambda a: a[:, :3], "4 numbers"),
+            ("geometry", "spheres", "nan", lambda a: a * np.nan, "4 numbers"),
+            ("geometry", "spheres", "inside-out", lambda a: -a, "are no spheres"),
+            ("geometry", "slack", "many", lambda a: np.zeros(3), "one numbers"),
+            ("geometry", "slack", "complex", lambda a: a + 1j, "one numbers"),
+            ("geometry", "faces", "beyond", lambda a: a + 10**6, "vertices that are not there"),
+            ("geometry", "vertices", "words", lambda a: a.astype(str), "3 numbers"),
+            ("reachability", "heights", "falling", lambda a: a[::-1], "do not fit together"),
+            ("reachability", "counts", "huge", lambda a: a + 1e300, "n x n x n x n numbers"),
+            ("reachability", "rotations", "short", lambda a: a[:-1], "do not fit together"),
+        )
+    },
     "no-yaml": (lambda folder: (folder / "robot.yaml").unlink(), r"has no robot.yaml"),
+    "bomb": (bomb, r"reachability.npz: damaged"),
+    "long-name": (yaml("urdf: robot.urdf", f"urdf: {'x' * 5000}"), r"needs xxx"),
     "no-table": (lambda folder: (folder / "reachability.npz").unlink(), r"reachability table is missing"),
     "cut-table": (
         lambda folder: (folder / "reachability.npz").write_bytes(b"PK"), r"reachability.npz: damaged",

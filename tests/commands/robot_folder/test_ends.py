@@ -12,7 +12,7 @@ from tamp.commands.robot_folder.arm import find_arm
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.description import Description, read_description
 from tamp.commands.robot_folder.ends import End, choose_end, ends
-from tamp.commands.robot_folder.hand import tip_is_hand
+from tamp.commands.robot_folder.hand import tip_is_hand, tip_is_replaced
 from tamp.commands.robot_folder.wanted import Wanted
 from tamp.errors import InputError
 from tests.commands.robot_folder.urdf import arm_text
@@ -122,6 +122,25 @@ def test_a_gripper_beside_the_tip_gives_way_to_ours(described) -> None:
     assert kept.dropped == () and set(arm.dropped) < set(kept.groups[-1].links)
 
 
+@pytest.mark.parametrize(
+    ("name", "kind", "replaced"),
+    [("gripper_link", "revolute", True), ("palm", "revolute", True),
+     ("gripper_link", "fixed", False), ("flange", "revolute", False)],
+)  # fmt: skip
+def test_the_body_of_a_gripper_gives_way_to_ours_with_its_jaw(
+    described, name: str, kind: str, replaced: bool
+) -> None:
+    wrist = (
+        HAND.replace('"hand"', f'"{name}"').replace('type="fixed"', 'type="revolute"')
+        .replace("</joint>", '<limit lower="-1" upper="1"/></joint>')
+    )  # fmt: skip
+    description = described(wrist + fingers(kind, name))
+    assert tip_is_replaced(description, name) is replaced
+    arm = find_arm(description, "foot", name, {}, ours=True, bare=replaced)
+    assert arm.dropped == ((name,) if replaced else ())
+    assert (name in arm.groups[-1].links) is not replaced
+
+
 def test_an_arm_begins_behind_a_joint_that_moves_all_of_it(described) -> None:
     root = '<link name="world"/><joint name="floor" type="planar"><parent link="world"/><child link="foot"/></joint>'
     assert choose_end(described(root)) == End("foot", "tool", 6)
@@ -174,6 +193,16 @@ def test_fingers_are_counted_from_where_their_pads_meet(described, name: str) ->
         ]
         gap = max(pads[0].min() - pads[1].max(), pads[1].min() - pads[0].max())
         assert gap == pytest.approx(opening, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("says", "speed"), [("", 0.05), ('velocity="0"', 0.05), ('velocity="0.03"', 0.03), ('velocity="4"', 0.1)]
+)  # fmt: skip
+def test_fingers_move_as_fast_as_they_can_and_slowly_where_nobody_says(
+    described, says: str, speed: float
+) -> None:
+    slow = sliding(*SLIDES["both along y"]).replace('velocity="0.1"', says)
+    assert [joint.velocity for joint in hand_of(described(slow)).fingers] == [speed, speed]
 
 
 @pytest.mark.parametrize(
