@@ -27,7 +27,7 @@ ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 WATCHED_SIGNALS = (*ENDING_SIGNALS, signal.SIGCHLD)
 """What who watches waits for."""
 
-END_TIMEOUT_S = 0.8
+END_TIMEOUT_S = 0.7
 """Seconds that the one who works may take to end by itself, those not counted in which it waited
 for a core.
 """
