@@ -91,7 +91,7 @@ def ends(description: Description) -> tuple[End, ...]:
             follow(only.child if free else base, only.child, (*way, only.child), moved)
             return
 
-        fingers = [joint for joint in branches if _is_finger(description, joint)]
+        fingers = [joint for joint in branches if is_finger(description, joint)]
         if moved >= FEWEST and fingers and len(fingers) == len(branches):
             found.append(_hand_end(base, fingers, way, moved))
             return
@@ -121,7 +121,7 @@ def _branches(description: Description, link: str) -> list[Joint]:
     ]  # fmt: skip
 
 
-def _is_finger(description: Description, joint: Joint) -> bool:
+def is_finger(description: Description, joint: Joint) -> bool:
     """Check whether the first joint that moves from here on moves a finger."""
     first = next(one for one in (joint, *outwards(description, joint.child)) if one.kind in MOVING)
     names = (first.name.lower(), first.child.lower())

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from tamp.commands.robot_folder.arm import FEWEST, LARGEST, outwards
 from tamp.commands.robot_folder.description import MOVING, Description
-from tamp.commands.robot_folder.ends import SHOWN, End, ends
+from tamp.commands.robot_folder.ends import SHOWN, End, ends, is_finger
 from tamp.commands.robot_folder.srdf import PlanningGroup, Srdf, links_above
 from tamp.errors import InputError
 from tamp.geometric.robot.urdf import Joint
@@ -67,11 +67,11 @@ def choose_arm(srdf: Srdf, description: Description) -> tuple[End | None, str]:
         )
 
     arm = among[0]
+    end = found.get(arm.joints[-1], End(arm.base, arm.tip, len(arm.joints)))
     said = (
         f"the arm is {srdf.place(arm.group.line)}'s group '{arm.group.name}': "
-        f"--arm {arm.base} {arm.tip}"
+        f"--arm {arm.base} {end.tip}"
     )
-    end = found.get(arm.joints[-1], End(arm.base, arm.tip, len(arm.joints)))
     return replace(end, base=arm.base, joints=len(arm.joints)), said
 
 
@@ -89,9 +89,15 @@ def _several(
 
 
 def arm_groups(srdf: Srdf, description: Description) -> list[ArmGroup]:
-    """List the groups that are chains of as many joints as arms have, in the file's order."""
+    """List the groups that are chains of as many joints as arms have, in the file's order; fingers
+    at their ends are no part of them.
+    """
     hands = _hands(srdf, description)
     fingers = {name for _, joints in hands.values() for name in joints}
+    fingers |= {
+        joint.name for joint in description.joints.values()
+        if joint.kind in MOVING and is_finger(description, joint)
+    }  # fmt: skip
     found: list[ArmGroup] = []
     for group in srdf.groups.values():
         named = joints_of(srdf, description, group) - fingers

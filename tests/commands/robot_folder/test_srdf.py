@@ -97,6 +97,18 @@ def test_a_group_of_joints_links_or_groups_is_a_chain_as_well(tmp_path: Path, gr
     assert (found["all"].base, found["all"].tip) == ("foot", "wrist3_link")
 
 
+def test_a_finger_at_the_end_of_a_chain_is_no_joint_of_the_arm(tmp_path: Path) -> None:
+    urdf = arm_text(extra=HEAD + HAND + fingers("revolute"))
+    group = ARM.replace('"tool"', '"left_finger"')
+    wanted = settled(tmp_path, group, urdf)
+    assert (wanted.base, wanted.tip) == ("foot", "tool")
+    (arm,) = arm_groups(
+        read_srdf(tmp_path / "arm.srdf", read_description(tmp_path / "arm.urdf")),
+        read_description(tmp_path / "arm.urdf"),
+    )
+    assert arm.joints == JOINTS
+
+
 def test_of_nested_groups_the_longest_is_the_arm(tmp_path: Path) -> None:
     short = '<group name="arm"><chain base_link="pan_link" tip_link="tool"/></group>'
     long = ARM.replace('"arm"', '"arm_and_torso"')
