@@ -14,13 +14,13 @@ from grounding.paper.encoders import (
     ENCODERS,
     SCALINGS,
     Args,
-    PosedClouds,
     chamfer,
     scaled,
     train_encoder,
 )
 from grounding.paper.feature_table import table_of
 from grounding.paper.features import CloudFeatures
+from grounding.paper.posed_clouds import PosedClouds
 from grounding.paper.runtime import NumpyEncoder
 from tamp.errors import InputError
 
