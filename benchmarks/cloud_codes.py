@@ -51,7 +51,7 @@ def main(options: Options) -> None:
     """Fit on three supports, then on varied ones; print the errors on the two of the test and on others."""
     test = paper_supports("on", "test")
     shown = {"three": paper_supports("on", "train"), "varied": varied_supports()}
-    asked = {name: {name: piece} for name, piece in test.items()}
+    asked: dict[str, Mapping[str, Support]] = {name: {name: piece} for name, piece in test.items()}
     asked["others"] = varied_supports(seed=1)
     rng = np.random.default_rng(options.seed)
     posed = {name: _posed(pieces, options.clouds, rng, "train") for name, pieces in shown.items()}

@@ -50,7 +50,8 @@ def varied_supports(count: int = PIECES, seed: int = 0) -> Mapping[str, Support]
         top = float(size[2])
         side = (float(size[0]), float(size[1]))
         if kind == "round":
-            side = (min(side) / 2**0.5,) * 2  # the largest square on it
+            edge = min(side) / 2**0.5  # of the largest square on it
+            side = (edge, edge)
         surface = Surface(kind, kind, Pose((0.0, 0.0, top)), side)
         body = Body(kind, parts, Pose(), False, surfaces=(surface,))
         found[f"{kind}_{number:03d}"] = Support(parts, region_of(body, surface))
