@@ -36,7 +36,7 @@ PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-pc": 0.77}, "inside"
 """MCA of the best network for each relation (the paper, section V, Q2); "the others similar"."""
 
 
-CLASSIFIERS = ("residual-turn", "attention")
+CLASSIFIERS = ("residual-turn", "middle-code", "attention")
 """The departures that change classifiers, too."""
 
 CHOICE = "own-choice"
@@ -65,6 +65,7 @@ class Variant:
 
 BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
 CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
+MIDDLE = ("middle-code",)
 SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
 DEPARTED = [
     Variant("mlp-bb", "discriminator", ("residual-turn",)),
@@ -75,6 +76,12 @@ DEPARTED = [
     Variant("gnn-bb", "both", SCALED),
     Variant("gnn-bb", "both", (*SCALED, "attention")),
     Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
+    Variant("mlp-pc", "discriminator", MIDDLE),
+    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights")),
+    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
+    Variant("gnn-pc", "discriminator", MIDDLE),
+    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights")),
+    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
 ]
 VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
 

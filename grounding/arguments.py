@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
@@ -98,6 +98,10 @@ class Encoder:
     """conv, which serves the models; pointnet++ and dense are for comparison."""
     scaling: str = "one"
     """Of the clouds: one factor for all (one), or each to the cube (each)."""
+    shapes: Literal["data", "varied"] = "data"
+    """Whose clouds: of the data set's bodies (data), or, without a data set, of furniture,
+    household shapes and pybullet's meshes of random sizes (varied).
+    """
     iterations: int | None = None
     """Batches; by default 4,000."""
     points: int | None = None
@@ -124,7 +128,7 @@ class Train:
     """
     departures: tuple[str, ...] = ()
     """Of the paper's networks: what is done otherwise than there, any of residual-turn,
-    mean-weights, scaled-classifier, attention, own-choice."""
+    middle-code, mean-weights, scaled-classifier, attention, own-choice."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -221,6 +225,9 @@ def _check(chosen: Arguments) -> None:
     ):
         _check_own(chosen)
 
+    if isinstance(chosen, Encoder) and chosen.shapes == "varied" and chosen.data is not None:
+        raise InputError("--shapes varied needs no data set: leave out --data")
+
     for name in ("count", "workers", "samples", "iterations", "points", "scenes", "pool"):
         number = vars(chosen).get(name)
         if number is not None and number < 1:
@@ -246,6 +253,8 @@ def _check(chosen: Arguments) -> None:
 def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
     """Check that a relation of one's own has data of one's own."""
     relation = chosen.relation
+    if isinstance(chosen, Encoder) and chosen.shapes == "varied":
+        return
     if isinstance(chosen, Encoder | Train) and (
         chosen.data is not None or data_file(relation, "train").is_file()
     ):

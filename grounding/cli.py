@@ -155,13 +155,18 @@ def _collect(chosen: Collect) -> None:
 def _encoder(chosen: Encoder, show: ReportProgress) -> None:
     out = chosen.out or encoder_file(chosen.relation)
     check_out(out, WEIGHTS, with_card(chosen.data or data_file(chosen.relation, "train")))
-    data = read_data(chosen.data, chosen.relation, "train")
+    varied = chosen.shapes == "varied"
+    data = None if varied else read_data(chosen.data, chosen.relation, "train")
     try:
         from grounding.paper.encoders import EncoderOptions, train_encoder
     except ImportError as error:
         raise _missing(error) from None
 
+<<<<<<< HEAD
     args = EncoderOptions(seed=chosen.seed)
+=======
+    args = Args(seed=chosen.seed, shapes=chosen.shapes)
+>>>>>>> clouds
     args = replace(
         args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
     )
@@ -171,6 +176,7 @@ def _encoder(chosen: Encoder, show: ReportProgress) -> None:
         "model": "encoder",
         "kind": chosen.kind,
         "scaling": chosen.scaling,
+        "shapes": chosen.shapes,
         "relation": chosen.relation,
         "seed": chosen.seed,
         "iterations": args.iterations,

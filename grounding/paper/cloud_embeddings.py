@@ -15,15 +15,16 @@ from torch import Tensor
 from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
 from grounding.paper.clouds import cloud
-from grounding.paper.encoders import centred, scaled
+from grounding.paper.encoders import scaled
 from grounding.paper.feature_table import FeatureTable, order
 from grounding.paper.features import PC, UNTURNED
+from grounding.paper.posed_clouds import centred
 from grounding.paper.rotations import quaternions
 from grounding.paper.runtime import NumpyEncoder
 from grounding.relation_scene import Placed
 
-BATCH = {"cpu": 16, "cuda": 512}
-"""Clouds that are encoded at once."""
+BATCH = {"cpu": 2, "cuda": 512}
+"""Clouds that are encoded at once; few of them stay in a processor's cache."""
 
 
 def embedding_table(
@@ -35,9 +36,10 @@ def embedding_table(
     count: int | None = None,
     surroundings: bool = True,
     residual: bool = True,
+    about_middle: bool = False,
 ) -> FeatureTable:
-    """Compute the table of `table_of` with `CloudFeatures(encoder, residual)` by torch; agrees to
-    1e-5.
+    """Compute the table of `table_of` with `CloudFeatures(encoder, residual, about_middle)` by
+    torch; agrees to 1e-5.
 
     Args:
         data: The scenes.
@@ -46,7 +48,7 @@ def embedding_table(
         device: Where torch computes.
         count: Only so many scenes, the first of `order`.
         surroundings: Whether the other bodies are encoded as well; they are most of the work.
-        residual: See `CloudFeatures`.
+        residual, about_middle: See `CloudFeatures`.
     """
     indices = order(data.holds)[:count]
     scenes = [data[int(index)].situation for index in indices]
@@ -70,12 +72,13 @@ def embedding_table(
     features[:, 3:7] = UNTURNED if residual else quaternions(rotations)
     if residual:
         middle = matrices[:, :3, 3] + np.stack([_extent_middle(item) for item in placed])
-    encode = _TorchEncoder(encoder, np.stack([points for points, _ in clouds]), device)
+    unit = np.stack([points for points, _ in clouds])
+    encode = _TorchEncoder(encoder, unit, device, about_middle)
     batch = BATCH.get(device, 512)
     for start in range(0, len(placed), batch):
         rows = slice(start, start + batch)
         features[rows, 7:] = encode(template[rows], scale[rows, None, None] * rotations[rows])
-        if start // batch % 200 == 199:
+        if start // batch % 1600 == 1599:
             progress(f"codes of {start + batch} of {len(placed)} clouds")
 
     sizes = np.array([2 + len(others) for others in around])
@@ -99,8 +102,15 @@ def _extent_middle(item: Placed) -> NDArray[np.float64]:
 class _TorchEncoder:
     """A `NumpyEncoder` and clouds of scale 1, shape (templates, points, 3), on a device."""
 
-    def __init__(self, encoder: NumpyEncoder, unit: NDArray[np.float64], device: str) -> None:
+    def __init__(
+        self,
+        encoder: NumpyEncoder,
+        unit: NDArray[np.float64],
+        device: str,
+        about_middle: bool = False,
+    ) -> None:
         self._device, self._scale, self._points = device, encoder.scale, encoder.points
+        self._about_middle = about_middle
         self._unit = self._tensor(unit)
         self._layers = [
             (self._tensor(weight), self._tensor(bias)) for weight, bias in encoder.layers
@@ -116,6 +126,8 @@ class _TorchEncoder:
         points = self._unit[torch.tensor(template, device=self._device)] @ self._tensor(
             turn
         ).transpose(1, 2)
+        if self._about_middle:
+            points -= (points.amin(dim=1, keepdim=True) + points.amax(dim=1, keepdim=True)) / 2
         x = scaled(points, self._scale)[:, : self._points]
         for weight, bias in self._layers[:-1]:
             x = torch.relu_(x @ weight + bias)

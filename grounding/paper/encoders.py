@@ -12,16 +12,21 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from grounding.body_geometry import BodyGeometry
 from grounding.dataset import Dataset
-from grounding.paper.clouds import POINTS, cloud
+from grounding.paper.clouds import POINTS
 from grounding.paper.features import CODE
+from grounding.paper.posed_clouds import PosedClouds
 from grounding.torch_layers import dense_layers, run_layers
 from tamp.errors import InputError
 
 SCALINGS = ("one", "each")
 """(a): one factor for all clouds, so that the largest fills [-0.5, 0.5]; (b): each cloud is brought
 to that cube.
+"""
+
+SHAPES = ("data", "varied")
+"""Whose clouds: those of a data set's bodies, or of furniture, household shapes and pybullet's
+meshes of random sizes.
 """
 
 
@@ -35,9 +40,10 @@ class EncoderOptions:
         rate: Adam's learning rate.
         validate_every: Iterations between looks at the validation clouds.
         validation: How many those are, of the data set's last tenth of the scenes.
-        points: Of each cloud; fewer are for tests.
-        seed: Of initial weights and batches.
+        points: Of each cloud.
+        seed: Of initial weights and batches, and of varied shapes.
         device: Where torch computes.
+        shapes: One of SHAPES.
     """
 
     iterations: int = 4000
@@ -48,6 +54,7 @@ class EncoderOptions:
     points: int = POINTS
     seed: int = 0
     device: str = "cpu"
+    shapes: str = "data"
 
 
 class Conv(nn.Module):
@@ -118,7 +125,7 @@ ENCODERS: dict[str, type[Conv] | type[PointNet] | type[Dense]] = {
 
 
 def train_encoder(
-    data: Dataset,
+    data: Dataset | None,
     kind: str = "conv",
     scaling: str = "one",
     args: EncoderOptions = EncoderOptions(),
@@ -128,20 +135,20 @@ def train_encoder(
     its validation Chamfer distance.
 
     Args:
-        data: Scenes, whose bodies as they are turned are the clouds.
+        data: Scenes, whose bodies as they are turned are the clouds; None for varied shapes.
         kind: One of ENCODERS.
         scaling: One of SCALINGS.
         args: How.
         progress: Told how far it is.
 
     Raises:
-        InputError: An unknown kind or scaling.
+        InputError: An unknown kind, scaling or set of shapes, or no scenes for those of a data set.
     """
     if kind not in ENCODERS:
         raise InputError(f"unknown encoder '{kind}'", found=kind, choices=ENCODERS)
     if scaling not in SCALINGS:
         raise InputError(f"unknown scaling '{scaling}'", found=scaling, choices=SCALINGS)
-    clouds = PosedClouds.of(data, args.device, args.points)
+    clouds = _clouds(data, args)
     factor = 0.5 / clouds.radius if scaling == "one" else 0.0
     with torch.random.fork_rng():
         torch.manual_seed(args.seed)
@@ -181,55 +188,14 @@ def train_encoder(
     return kept, best
 
 
-@dataclass(frozen=True, eq=False)
-class PosedClouds:
-    """The bodies of a data set's scenes: clouds of scale 1 about their centroids, and each one's
-    scale and rotation.
-
-    Attributes:
-        unit: Shape (templates, points, 3).
-        template: Shape (n,).
-        turn: Scale times rotation, shape (n, 3, 3).
-    """
-
-    unit: Tensor
-    template: Tensor
-    turn: Tensor
-
-    @classmethod
-    def of(cls, data: Dataset, device: str, points: int = POINTS) -> PosedClouds:
-        """Collect the clouds of all bodies of all scenes."""
-        unit = np.stack(
-            [centred(BodyGeometry(parts))[0][:points] for parts in data.templates.values()]
-        )
-        there = data.arrays["body"] >= 0
-        turn = data.arrays["scale"][there][:, None, None] * data.arrays["pose"][there][:, :3, :3]
-        return cls(
-            torch.tensor(unit, dtype=torch.float32, device=device),
-            torch.tensor(data.arrays["body"][there].astype(np.int64), device=device),
-            torch.tensor(turn, dtype=torch.float32, device=device),
-        )
-
-    def __len__(self) -> int:
-        return len(self.template)
-
-    @property
-    def radius(self) -> float:
-        """Return the radius of the ball that contains every cloud, metres."""
-        largest = self.unit.norm(dim=2).amax(dim=1)[self.template]
-        return float((largest * self.turn[:, 0].norm(dim=1)).max())
-
-    def take(self, rows: Tensor) -> Tensor:
-        """Select posed clouds, shape (rows, points, 3), metres."""
-        rows = rows.to(self.template.device)
-        return self.unit[self.template[rows]] @ self.turn[rows].transpose(1, 2)
-
-
-def centred(form: BodyGeometry) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Centre a form's cloud about its centroid; return both."""
-    points = cloud(form)
-    centroid = points.mean(axis=0)
-    return points - centroid, centroid
+def _clouds(data: Dataset | None, args: Args) -> PosedClouds:
+    if args.shapes not in SHAPES:
+        raise InputError(f"unknown shapes '{args.shapes}'", found=args.shapes, choices=SHAPES)
+    if args.shapes == "varied":
+        return PosedClouds.varied(args.seed, args.device, args.points)
+    if data is None:
+        raise InputError("no scenes whose bodies an encoder could be trained on")
+    return PosedClouds.of(data, args.device, args.points)
 
 
 def scaled(points: Tensor, factor: float) -> Tensor:

@@ -130,12 +130,14 @@ class CloudFeatures:
             turned like is in its code, a position is the middle of the posed cloud's extent, and a
             generator turns argument 1 from where it was. Else quaternions are true, positions
             centroids, turns absolute.
+        about_middle: Whether a code is of the cloud about the middle of its extent, which is where
+            its position is, and not about its centroid as published.
     """
 
     size = PC
 
-    def __init__(self, encoder: Encoder, residual: bool = True) -> None:
-        self._encode, self._residual = encoder, residual
+    def __init__(self, encoder: Encoder, residual: bool = True, about_middle: bool = False) -> None:
+        self._encode, self._residual, self._about_middle = encoder, residual, about_middle
         self._clouds: WeakKeyDictionary[Placed, Array] = WeakKeyDictionary()
 
     def observe(self, situation: RelationScene, surroundings: bool = True) -> FeatureObservation:
@@ -174,13 +176,12 @@ class CloudFeatures:
     def _described(self, item: Placed, code: Array | None = None) -> Array:
         rotation, position = item.matrix[:3, :3], item.matrix[:3, 3]
         points = cloud(item.form) @ rotation.T
-        middle = points.mean(axis=0)
+        centroid, middle = points.mean(axis=0), (points.min(axis=0) + points.max(axis=0)) / 2
         if code is None:
-            code = self._encode(points - middle)
+            code = self._encode(points - (middle if self._about_middle else centroid))
         if self._residual:
-            middle = (points.min(axis=0) + points.max(axis=0)) / 2
             return np.concatenate([middle + position, UNTURNED, code])
-        return np.concatenate([middle + position, quaternions(rotation[None])[0], code])
+        return np.concatenate([centroid + position, quaternions(rotation[None])[0], code])
 
 
 def box_features(centres: Array, turns: Array, corners: Array) -> Array:

@@ -33,6 +33,9 @@ from tamp.geometric.scene.pose import Array
 RESIDUAL = "turn.residual"
 """The array whose presence says that a generator turns argument 1 from where it was."""
 
+MIDDLE = "code.middle"
+"""The array whose presence says that codes are of clouds about the middle of their extents."""
+
 TRIES = "choice.tries"
 """The array, one number, that says among how many proposals the own classifier chooses."""
 
@@ -157,7 +160,7 @@ def features_in(arrays: Arrays, classifier: Network) -> Features:
             for name, array in arrays.items()
             if "encoder." in name
         }
-        return CloudFeatures(NumpyEncoder(encoder), residual)
+        return CloudFeatures(NumpyEncoder(encoder), residual, MIDDLE in arrays)
 
     raise InputError(
         f"a classifier of {inputs} features; known: {2 * BB} (boxes), {2 * PC} (clouds)"

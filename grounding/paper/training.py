@@ -11,16 +11,31 @@ from grounding.dataset import Dataset
 from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
-from grounding.paper.runtime import CHOICE, RESIDUAL, TRIES, NumpyEncoder
+from grounding.paper.runtime import CHOICE, MIDDLE, RESIDUAL, TRIES, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import TrainerOptions
 from grounding.train_options import NETWORKS
 from grounding.weights import Weights
 from tamp.errors import InputError
 
+<<<<<<< HEAD
 DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier", "attention", "own-choice")
+=======
+MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
+"""Network and features."""
+
+DEPARTURES = (
+    "residual-turn",
+    "middle-code",
+    "mean-weights",
+    "scaled-classifier",
+    "attention",
+    "own-choice",
+)
+>>>>>>> clouds
 """What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
-it was, as the published one on clouds does; the running mean of the generator's weights is kept;
+it was, as the published one on clouds does; a code is of the cloud about the middle of its extent,
+where its position is, not about its centroid; the running mean of the generator's weights is kept;
 the classifier's gradient is brought to the critic's length where both teach; a GNN weights the
 surroundings by a softmax instead of taking their mean; of CHOICE proposals the one that the own
 classifier takes for the likeliest is returned.
@@ -75,8 +90,14 @@ def train(
     """
     _check(data, model, scheme, sizes, seeds, encoder, departures)
     residual = _clouds(model) or "residual-turn" in departures
+<<<<<<< HEAD
     table = table or features_of(data, model, encoder, progress, max(sizes), residual)
     args = TrainerOptions(
+=======
+    about_middle = "middle-code" in departures
+    table = table or features_of(data, model, encoder, progress, max(sizes), residual, about_middle)
+    args = Args(
+>>>>>>> clouds
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,
@@ -93,6 +114,8 @@ def train(
     )
     if residual:
         extra[RESIDUAL] = np.ones(1, np.float32)
+    if about_middle:
+        extra[MIDDLE] = np.ones(1, np.float32)
     if "own-choice" in departures:
         extra[TRIES] = np.full(1, CHOICE, np.float32)
 
@@ -126,9 +149,10 @@ def features_of(
     progress: Callable[[str], None],
     count: int | None = None,
     residual: bool = False,
+    about_middle: bool = False,
 ) -> FeatureTable:
     """Compute the features that a model is trained on, of the first `count` scenes or of all; with
-    `residual` those for turns from where argument 1 was.
+    `residual` those for turns from where argument 1 was, with `about_middle` those of middle-code.
     """
     if _clouds(model) and encoder is not None:
         around = model.startswith("gnn")
@@ -139,6 +163,7 @@ def features_of(
             count=count,
             surroundings=around,
             residual=residual,
+            about_middle=about_middle,
         )
     return table_of(data, BoxFeatures(residual), progress, count)
 
@@ -159,6 +184,8 @@ def _check(
     for found in departures:
         if found not in DEPARTURES:
             raise InputError(f"unknown departure '{found}'", found=found, choices=DEPARTURES)
+    if "middle-code" in departures and not _clouds(model):
+        raise InputError(f"model '{model}' sees no clouds, whose codes middle-code changes")
     if "attention" in departures and model.startswith("mlp"):
         raise InputError(f"model '{model}' sees no surroundings to attend to")
     if model not in NETWORKS:

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -84,8 +85,13 @@ def test_models_without_weights_of_their_own(learn: Run) -> None:
 
 
 def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+<<<<<<< HEAD
     few = encoders.EncoderOptions(batch=2, validation=2)
     monkeypatch.setattr(encoders, "EncoderOptions", lambda seed: few)
+=======
+    few = encoders.Args(batch=2, validation=2)
+    monkeypatch.setattr(encoders, "Args", lambda seed, shapes: replace(few, shapes=shapes))
+>>>>>>> clouds
     assert "weights/on_encoder.safetensors written" in learn(
         "encoder on --iterations 1 --points 64"
     )
@@ -99,6 +105,9 @@ def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPa
     learn(f"train on --model tree-pc {inside}")  # with the encoder that is inside of it
     first, again = (folder / f"weights/{name}.safetensors" for name in ("on_tree-pc", "again"))
     assert first.read_bytes() == again.read_bytes()
+    learn("encoder on --iterations 1 --points 64 --shapes varied --out weights/varied.safetensors")
+    assert json.loads((folder / "weights/varied.json").read_text())["shapes"] == "varied"
+    learn("train on --model tree-pc --encoder weights/varied.safetensors")
     learn("encoder on --iterations 1 --points 64 --kind dense --out weights/dense.safetensors")
     assert (
         run(["train", "on", "--model", "tree-pc", "--encoder", "weights/dense.safetensors"])
@@ -133,6 +142,7 @@ def test_an_interrupted_training_goes_on(
 @pytest.mark.parametrize(
     ("line", "message"),
     [
+        ("encoder on --shapes varied --data data/on_train.npz", "leave out --data"),
         (
             "",
             "no command. Choices: new, ask, generate, explore, collect, show, encoder, train, evaluate",

@@ -11,7 +11,12 @@ from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate
 from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle
+<<<<<<< HEAD
 from grounding.paper.blind_ceiling import BlindModel, CornerModel, blind_ceiling
+=======
+from grounding.paper.blind import BlindModel, CornerModel, blind_ceiling
+from grounding.paper.clouds import cloud
+>>>>>>> clouds
 from grounding.paper.features import BoxFeatures, CloudFeatures, completed, poses_of
 from grounding.paper.oracle import in_place, own_box, published_oracle
 from grounding.paper.rotations import quaternions, rotations
@@ -165,3 +170,19 @@ def test_clouds_are_shown_unturned_and_turned_from_where_they_were(data: Dataset
 def test_an_unknown_layout_is_named(tmp_path) -> None:
     with pytest.raises(InputError, match="unknown layout 'papre'"):
         generate(Job("on", "train", 4, layout="papre"), tmp_path / "x.npz", workers=1)
+
+
+def test_a_code_about_the_middle_is_of_what_the_position_is_the_middle_of(data: Dataset) -> None:
+    """Read a table's height off its code: half of it above the middle, whatever the centroid is."""
+
+    def top(points: np.ndarray) -> np.ndarray:
+        return np.full(128, points[:, 2].max())
+
+    situation: RelationScene = data[0].situation
+    points = cloud(situation.support.form) @ situation.support.matrix[:3, :3].T
+    half = np.ptp(points[:, 2]) / 2
+    about_middle = CloudFeatures(top, about_middle=True).observe(situation).arguments[0]
+    assert about_middle[7:] == pytest.approx(half)
+    about_centroid = CloudFeatures(top).observe(situation).arguments[0]
+    assert about_centroid[7:] == pytest.approx(points[:, 2].max() - points[:, 2].mean())
+    assert about_middle[:7] == pytest.approx(about_centroid[:7])

@@ -2,12 +2,16 @@ import numpy as np
 import pytest
 import torch
 
+from grounding.paper.encoders import Args as EncoderArgs
+from grounding.paper.encoders import train_encoder
 from grounding.paper.runtime import PaperModel
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import TrainerOptions
 from grounding.paper.training import features_of, train
+from grounding.weights import Weights
 from tamp.errors import InputError
 
+FEW = EncoderArgs(iterations=2, batch=4, validation=4, points=128, validate_every=1)
 SETTING = {"sizes": [240, 20], "seeds": [0, 3]}
 
 
@@ -89,6 +93,24 @@ def test_a_trained_classifier_is_taken_over_and_nothing_else_changes(data):
         assert all(np.array_equal(one.arrays[name], other.arrays[name]) for name in one.arrays)
 
 
+def test_codes_about_the_middle_are_in_training_and_in_the_weights(data):
+    encoder = Weights(train_encoder(data, "conv", "one", FEW)[0], {})
+    setting = {"sizes": [20], "seeds": [0], "iterations": 2, "encoder": encoder}
+    (plain,) = train(data, "mlp-pc", "classifier", **setting)
+    (about,) = train(data, "mlp-pc", "classifier", departures=["middle-code"], **setting)
+    assert about.arrays.keys() - plain.arrays.keys() == {"code.middle"}
+    assert about.card["departures"] == ["middle-code"]
+    plain_table, about_table = (
+        features_of(data, "mlp-pc", encoder, lambda _: None, 20, True, middle)
+        for middle in (False, True)
+    )
+    assert np.array_equal(plain_table.arguments[:, :7], about_table.arguments[:, :7])
+    situation = data[0].situation
+    codes = [PaperModel(one)._features.observe(situation).arguments[0] for one in (plain, about)]
+    rows = [np.abs(about_table.arguments[:, :135] - code).max(axis=1).min() for code in codes]
+    assert rows[1] < 1e-4 < rows[0]
+
+
 def test_another_runs_state_is_refused(data, tmp_path):
     state = tmp_path / "state.safetensors"
     train(data, "mlp-bb", "classifier", sizes=[20], seeds=[0], iterations=2, state=state)
@@ -107,6 +129,7 @@ def test_another_runs_state_is_refused(data, tmp_path):
         ({"sizes": [241], "seeds": [0]}, "training sets of 241 to 241"),
         ({"sizes": [20], "seeds": []}, "1 sizes for 0 seeds"),
         ({"model": "mlp-pc"}, "needs an encoder"),
+        ({"departures": ["middle-code"]}, "'mlp-bb' sees no clouds"),
     ],
 )
 def test_what_cannot_be_trained_is_said(data, change, message):
