@@ -22,7 +22,7 @@ from grounding.paper.runtime import NumpyEncoder
 from grounding.paper.scenes import SUPPORT_SCALE, paper_supports
 from grounding.paper.varied_shapes import varied_supports
 from grounding.registry import SHIPPED
-from grounding.supports import Support
+from grounding.supports import FurnitureSupport
 from grounding.train import encoder_of
 from tamp.errors import InputError
 
@@ -51,7 +51,7 @@ def main(options: Options) -> None:
     """Fit on three supports, then on varied ones; print the errors on the two of the test and on others."""
     test = paper_supports("on", "test")
     shown = {"three": paper_supports("on", "train"), "varied": varied_supports()}
-    asked: dict[str, Mapping[str, Support]] = {name: {name: piece} for name, piece in test.items()}
+    asked: dict[str, Mapping[str, FurnitureSupport]] = {name: {name: piece} for name, piece in test.items()}
     asked["others"] = varied_supports(seed=1)
     rng = np.random.default_rng(options.seed)
     posed = {name: _posed(pieces, options.clouds, rng, "train") for name, pieces in shown.items()}
@@ -88,7 +88,7 @@ class _Probe:
         return (codes - self._mean) / self._scale @ self._weights + self._offset
 
 
-def _posed(pieces: Mapping[str, Support], count: int, rng: np.random.Generator, split: str) -> list[Array]:
+def _posed(pieces: Mapping[str, FurnitureSupport], count: int, rng: np.random.Generator, split: str) -> list[Array]:
     """Scale pieces as a split does and turn them by any yaw; `count` clouds (points, 3), metres."""
     forms = [BodyGeometry(piece.parts) for piece in pieces.values()]
     found = []

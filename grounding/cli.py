@@ -162,11 +162,7 @@ def _encoder(chosen: Encoder, show: ReportProgress) -> None:
     except ImportError as error:
         raise _missing(error) from None
 
-<<<<<<< HEAD
-    args = EncoderOptions(seed=chosen.seed)
-=======
-    args = Args(seed=chosen.seed, shapes=chosen.shapes)
->>>>>>> clouds
+    args = EncoderOptions(seed=chosen.seed, shapes=chosen.shapes)
     args = replace(
         args, iterations=chosen.iterations or args.iterations, points=chosen.points or args.points
     )

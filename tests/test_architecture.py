@@ -156,6 +156,7 @@ def test_torch_stays_where_training_is() -> None:
     }
     assert files == {
         "grounding/torch_layers.py",
+        "grounding/paper/posed_clouds.py",
         *(f"grounding/relational/{name}.py" for name in ("training", "flow_training")),
         *(
             f"grounding/paper/{name}.py"

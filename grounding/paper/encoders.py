@@ -188,7 +188,7 @@ def train_encoder(
     return kept, best
 
 
-def _clouds(data: Dataset | None, args: Args) -> PosedClouds:
+def _clouds(data: Dataset | None, args: EncoderOptions) -> PosedClouds:
     if args.shapes not in SHAPES:
         raise InputError(f"unknown shapes '{args.shapes}'", found=args.shapes, choices=SHAPES)
     if args.shapes == "varied":

@@ -18,12 +18,6 @@ from grounding.train_options import NETWORKS
 from grounding.weights import Weights
 from tamp.errors import InputError
 
-<<<<<<< HEAD
-DEPARTURES = ("residual-turn", "mean-weights", "scaled-classifier", "attention", "own-choice")
-=======
-MODELS = ("mlp-bb", "gnn-bb", "mlp-pc", "gnn-pc")
-"""Network and features."""
-
 DEPARTURES = (
     "residual-turn",
     "middle-code",
@@ -32,7 +26,6 @@ DEPARTURES = (
     "attention",
     "own-choice",
 )
->>>>>>> clouds
 """What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
 it was, as the published one on clouds does; a code is of the cloud about the middle of its extent,
 where its position is, not about its centroid; the running mean of the generator's weights is kept;
@@ -90,14 +83,9 @@ def train(
     """
     _check(data, model, scheme, sizes, seeds, encoder, departures)
     residual = _clouds(model) or "residual-turn" in departures
-<<<<<<< HEAD
-    table = table or features_of(data, model, encoder, progress, max(sizes), residual)
-    args = TrainerOptions(
-=======
     about_middle = "middle-code" in departures
     table = table or features_of(data, model, encoder, progress, max(sizes), residual, about_middle)
-    args = Args(
->>>>>>> clouds
+    args = TrainerOptions(
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,

@@ -14,8 +14,8 @@ from grounding.household import SHAPES
 from grounding.mesh_folder import unusable
 from grounding.objects import object_templates
 from grounding.relation_scene import region_of
-from grounding.supports import Support
-from tamp.geometric.loading.furniture import FURNITURE, Options
+from grounding.supports import FurnitureSupport
+from tamp.geometric.loading.furniture import FURNITURE, FurnitureOptions
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Surface
 
@@ -33,7 +33,7 @@ _SEED = 20261130
 
 
 @lru_cache(maxsize=4)
-def varied_supports(count: int = PIECES, seed: int = 0) -> Mapping[str, Support]:
+def varied_supports(count: int = PIECES, seed: int = 0) -> Mapping[str, FurnitureSupport]:
     """Make pieces of furniture whose top is meant, by name; deterministic.
 
     Args:
@@ -42,7 +42,7 @@ def varied_supports(count: int = PIECES, seed: int = 0) -> Mapping[str, Support]
     """
     rng = np.random.default_rng([_SEED, seed])
     kinds = list(_KINDS)
-    found: dict[str, Support] = {}
+    found: dict[str, FurnitureSupport] = {}
     for number in range(count):
         kind = kinds[number % len(kinds)]
         size = rng.uniform(LEAST_SIZE_M, MOST_SIZE_M)
@@ -54,7 +54,7 @@ def varied_supports(count: int = PIECES, seed: int = 0) -> Mapping[str, Support]
             side = (edge, edge)
         surface = Surface(kind, kind, Pose((0.0, 0.0, top)), side)
         body = Body(kind, parts, Pose(), False, surfaces=(surface,))
-        found[f"{kind}_{number:03d}"] = Support(parts, region_of(body, surface))
+        found[f"{kind}_{number:03d}"] = FurnitureSupport(parts, region_of(body, surface))
     return found
 
 
@@ -153,7 +153,7 @@ def _carcass(kind: str, size: Size, rng: Random, *, back: bool) -> tuple[Part, .
     rows = int(rng.integers(1, 2 + (height > 0.5) + (height > 0.9)))
     columns = int(rng.integers(1, 2 + (x > 0.7)))
     plinth = float(rng.uniform(0.02, 0.15)) * height if rng.random() < 0.5 else 0.0
-    options = Options(rows=rows, columns=columns, back=back, plinth=plinth)
+    options = FurnitureOptions(rows=rows, columns=columns, back=back, plinth=plinth)
     return FURNITURE[kind].build(kind, (x, y, height), options).parts
 
 

@@ -85,13 +85,10 @@ def test_models_without_weights_of_their_own(learn: Run) -> None:
 
 
 def test_models_on_clouds(learn: Run, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-<<<<<<< HEAD
     few = encoders.EncoderOptions(batch=2, validation=2)
-    monkeypatch.setattr(encoders, "EncoderOptions", lambda seed: few)
-=======
-    few = encoders.Args(batch=2, validation=2)
-    monkeypatch.setattr(encoders, "Args", lambda seed, shapes: replace(few, shapes=shapes))
->>>>>>> clouds
+    monkeypatch.setattr(
+        encoders, "EncoderOptions", lambda seed, shapes: replace(few, shapes=shapes)
+    )
     assert "weights/on_encoder.safetensors written" in learn(
         "encoder on --iterations 1 --points 64"
     )

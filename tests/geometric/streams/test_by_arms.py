@@ -92,7 +92,7 @@ class Room:
         loaded = attached is not None
 
         class Arrangement:
-            def path_hits(_, confs: Any, *, padding: float) -> tuple[str, str] | None:
+            def path_hits(this, confs: Any, *, padding: float) -> tuple[str, str] | None:
                 self.asked.append((loaded, len(confs), padding))
                 return self._hits.get(loaded)
 

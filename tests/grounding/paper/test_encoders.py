@@ -13,12 +13,7 @@ from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.encoders import (
     ENCODERS,
     SCALINGS,
-<<<<<<< HEAD
     EncoderOptions,
-    PosedClouds,
-=======
-    Args,
->>>>>>> clouds
     chamfer,
     scaled,
     train_encoder,

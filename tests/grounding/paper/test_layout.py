@@ -11,12 +11,8 @@ from grounding.dataset import Dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate
 from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle
-<<<<<<< HEAD
 from grounding.paper.blind_ceiling import BlindModel, CornerModel, blind_ceiling
-=======
-from grounding.paper.blind import BlindModel, CornerModel, blind_ceiling
 from grounding.paper.clouds import cloud
->>>>>>> clouds
 from grounding.paper.features import BoxFeatures, CloudFeatures, completed, poses_of
 from grounding.paper.oracle import in_place, own_box, published_oracle
 from grounding.paper.rotations import quaternions, rotations

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 import torch
 
-from grounding.paper.encoders import Args as EncoderArgs
+from grounding.paper.encoders import EncoderOptions as EncoderArgs
 from grounding.paper.encoders import train_encoder
 from grounding.paper.runtime import PaperModel
 from grounding.paper.trainer import SCHEMES, Trainer
