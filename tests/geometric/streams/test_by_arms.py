@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -91,12 +92,11 @@ class Room:
         assert poses == {} and not fixed  # bodies at rest were tested before
         loaded = attached is not None
 
-        class Arrangement:
-            def path_hits(this, confs: Any, *, padding: float) -> tuple[str, str] | None:
-                self.asked.append((loaded, len(confs), padding))
-                return self._hits.get(loaded)
+        def path_hits(confs: Any, *, padding: float) -> tuple[str, str] | None:
+            self.asked.append((loaded, len(confs), padding))
+            return self._hits.get(loaded)
 
-        return Arrangement()
+        return SimpleNamespace(path_hits=path_hits)
 
 
 REACH = Reach(np.zeros((4, 7)), np.zeros((3, 7)))
