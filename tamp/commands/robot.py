@@ -85,6 +85,8 @@ class Make:
     """The arm's carrying configuration, one number a joint; else one is looked for."""
     stands: Annotated[tuple[str, ...], tyro.conf.arg(metavar="JOINT=VALUE")] = ()
     """Where joints stand that are no part of the arm; else as near to 0 as they get."""
+    without: Annotated[tuple[str, ...], tyro.conf.arg(metavar="LINK")] = ()
+    """Links that are left out, with all that hangs on them but the arm: another arm of the body."""
     quiet: bool = False
     """No progress."""
 
@@ -214,6 +216,7 @@ def _wanted(options: Make, urdf: Path, file: Path | None = None) -> Wanted:
         height=options.height,
         home=options.home,
         fixed=_fixed(options.stands),
+        without=options.without,
         srdf=srdf,
         remarks=remarks,
     )

@@ -16,11 +16,11 @@ from tamp.commands.robot_folder.check import against_urdf, check_reach
 from tamp.commands.robot_folder.choose_gripper import choose_gripper, named_fingers
 from tamp.commands.robot_folder.column import on_column
 from tamp.commands.robot_folder.convex import CollisionElement, joined, pieces, solids
-from tamp.commands.robot_folder.description import read_description
 from tamp.commands.robot_folder.gripper import Gripper
 from tamp.commands.robot_folder.hand import tip_is_hand, tip_is_replaced
 from tamp.commands.robot_folder.home import home
 from tamp.commands.robot_folder.kept_steps import kept, kept_hulls
+from tamp.commands.robot_folder.left_out import description_for
 from tamp.commands.robot_folder.reach_table import table
 from tamp.commands.robot_folder.self_collision import (
     allowed_pairs,
@@ -69,7 +69,7 @@ def make(wanted: Wanted, told: Told) -> Made:
     """
     told("reading the URDF", 0.0)
     file = wanted.urdf
-    description = read_description(file)
+    description = description_for(wanted)
     base = wanted.base or description.root
     fingers = named_fingers(description, wanted)
     bare = (

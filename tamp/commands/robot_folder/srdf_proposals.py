@@ -8,10 +8,11 @@ from itertools import product
 
 import numpy as np
 
+from tamp.commands.robot_folder import self_collision
 from tamp.commands.robot_folder.arm import Arm, outwards
 from tamp.commands.robot_folder.description import Description
 from tamp.commands.robot_folder.home import lowest
-from tamp.commands.robot_folder.self_collision import STATES, Pair, home_collision
+from tamp.commands.robot_folder.self_collision import Pair, home_collision
 from tamp.commands.robot_folder.srdf import Disabled, Srdf
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import LIMIT_MARGIN_RAD, Robot
@@ -119,7 +120,7 @@ def disabled_that_meet(
             reason = f" ({one.reason})" if one.reason else ""
             found.append((count, (
                 f"{srdf.place(one.line)} disables {first} and {second}{reason}, which meet in "
-                f"{100 * count / STATES:.2g} % of states: they are checked"
+                f"{100 * count / self_collision.STATES:.2g} % of states: they are checked"
             )))  # fmt: skip
     found.sort(key=lambda pair: -pair[0])
     more = len(found) - SAID

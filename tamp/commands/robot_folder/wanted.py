@@ -30,6 +30,7 @@ class Wanted:
         height: Metres at which an arm that does not drive is bolted to something.
         home: Its carrying configuration.
         fixed: Where joints stand that are no part of the arm.
+        without: Links that are left out, with all that hangs on them but the arm.
         srdf: What MoveIt is told about the robot: its states and pairs are proposals.
         remarks: Sentences about how these choices were made.
     """
@@ -49,5 +50,6 @@ class Wanted:
     height: float = 0.0
     home: tuple[float, ...] | None = None
     fixed: Mapping[str, float] = field(default_factory=dict[str, float])
+    without: tuple[str, ...] = ()
     srdf: Srdf | None = None
     remarks: tuple[str, ...] = ()

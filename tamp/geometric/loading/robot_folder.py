@@ -110,7 +110,8 @@ def _one(root: YamlNode, folder: Path) -> Robot:
 
 def _several(root: YamlNode, folder: Path) -> Robot:
     """Read a robot whose arms are those of other robots' folders."""
-    top = root.mapping(("format", "version", "base", "arms"), required=("base", "arms"))
+    keys = ("format", "version", "base", "arms", "allowed")
+    top = root.mapping(keys, required=("base", "arms"))
     base = top["base"].mapping(_BASE, required=_BASE)
     body = Mobile(
         name=folder.name,
@@ -133,7 +134,8 @@ def _several(root: YamlNode, folder: Path) -> Robot:
         if own.beside:
             raise entry["robot"].error(f"the robot '{own.name}' has several arms itself")
         arms.append(as_arm(body, own, name, read_pose(entry["mount"])))
-    return joined(arms)
+    names = [body.base.name, *(link.name for arm in arms for link in arm.links[1:])]
+    return joined(arms, _allowed(top["allowed"], names) if "allowed" in top else frozenset())
 
 
 def _beside(node: YamlNode, folder: Path) -> Path:

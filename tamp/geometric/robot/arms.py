@@ -141,12 +141,17 @@ def _pair(first: str, second: str) -> tuple[str, str]:
     return min(first, second), max(first, second)
 
 
-def joined(arms: Iterable[Robot]) -> Robot:
-    """Return the robot of several arms: the first one, the others beside it and at home."""
+def joined(arms: Iterable[Robot], touching: frozenset[tuple[str, str]] = frozenset()) -> Robot:
+    """Return the robot of several arms: the first one, the others beside it and at home.
+
+    Args:
+        arms: Each with its own links and the base.
+        touching: Pairs of links of several arms, each sorted, that are never checked.
+    """
     alone = tuple(arms)
     base = alone[0].links[:1]
     links = (*base, *(link for arm in alone for link in arm.links[1:]))
-    allowed = frozenset(pair for arm in alone for pair in arm.allowed)
+    allowed = touching.union(*(arm.allowed for arm in alone))
     described = tuple(place for arm in alone for place in arm.described)
     whole = [replace(arm, links=links, allowed=allowed, described=described) for arm in alone]
     still = [beside(whole, arm.arm, {}) for arm in whole]
