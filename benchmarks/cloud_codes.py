@@ -1,7 +1,9 @@
 """What codes of clouds tell of a support's height: a linear probe's error on pieces that it was not fitted to.
 
-python -m benchmarks.cloud_codes
-python -m benchmarks.cloud_codes --encoders weights/on_encoder.safetensors
+    python -m benchmarks.cloud_codes --clouds 150
+    python -m benchmarks.cloud_codes --encoders weights/on_encoder.safetensors
+
+Without --encoders it is the one that ships.
 """
 
 from __future__ import annotations

@@ -162,6 +162,7 @@ def test_torch_stays_where_training_is() -> None:
             f"grounding/paper/{name}.py"
             for name in (
                 "cloud_embeddings",
+                "posed_clouds",
                 "critic",
                 "encoders",
                 "networks",

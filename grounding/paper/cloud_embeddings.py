@@ -23,8 +23,8 @@ from grounding.paper.rotations import quaternions
 from grounding.paper.runtime import NumpyEncoder
 from grounding.relation_scene import Placed
 
-BATCH = {"cpu": 2, "cuda": 512}
-"""Clouds that are encoded at once; few of them stay in a processor's cache."""
+BATCH = {"cpu": 16, "cuda": 512}
+"""Clouds that are encoded at once."""
 
 
 def embedding_table(
@@ -78,7 +78,7 @@ def embedding_table(
     for start in range(0, len(placed), batch):
         rows = slice(start, start + batch)
         features[rows, 7:] = encode(template[rows], scale[rows, None, None] * rotations[rows])
-        if start // batch % 1600 == 1599:
+        if start // batch % 200 == 199:
             progress(f"codes of {start + batch} of {len(placed)} clouds")
 
     sizes = np.array([2 + len(others) for others in around])
