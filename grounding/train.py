@@ -197,7 +197,7 @@ def train_paper(data: Dataset, args: TrainArgs, progress: Say, *, model: str) ->
     """Train one of the paper's networks, on as many scenes in the order of
     `grounding.paper.feature_table.order`.
     """
-    from grounding.paper.training import HEADLINE_SCHEME
+    from grounding.paper.trainer_options import HEADLINE_SCHEME
     from grounding.paper.training import train as train_networks
 
     (weights,) = train_networks(

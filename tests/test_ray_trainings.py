@@ -14,9 +14,9 @@ from benchmarks import paper_variants
 from benchmarks.paper_variants import Options
 from benchmarks.ray_trainings import Files, Training, train_all, train_there
 from grounding.dataset import write_dataset
-from grounding.paper.training import train
 from grounding.weights import Weights, read_weights
 from tests.grounding.paper.conftest import boxes_on_a_table
+from tests.needs import NEEDS_TORCH
 
 DATA = boxes_on_a_table(40)
 
@@ -31,9 +31,12 @@ def killed_once(training: Training, files: Files, folder: Path) -> list[Weights]
 
 
 @pytest.mark.slow
+@NEEDS_TORCH
 @pytest.mark.timeout(300)
 @pytest.mark.filterwarnings("default")  # Ray's own
 def test_a_killed_worker_loses_no_training_and_the_weights_are_the_same(tmp_path: Path) -> None:
+    from grounding.paper.training import train  # which imports torch
+
     path = tmp_path / "train.npz"
     write_dataset(path, DATA)
     files = Files(path.read_bytes(), path.with_suffix(".json").read_bytes())
@@ -56,6 +59,7 @@ def test_a_killed_worker_loses_no_training_and_the_weights_are_the_same(tmp_path
 
 
 @pytest.mark.slow
+@NEEDS_TORCH
 @pytest.mark.timeout(300)
 @pytest.mark.filterwarnings("default")
 def test_the_benchmark_trains_there_what_is_missing(

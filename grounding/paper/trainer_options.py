@@ -12,6 +12,12 @@ change.
 VALIDATION = 500
 """Examples of the validation split at most."""
 
+HEADLINE_SCHEME = {"on": "discriminator"}
+"""What teaches the generator unless it is said, by relation; `both` for all others. The published
+example trains on `discriminator`, and on `on` `both` drives generators over the edge
+(docs/paper-models.md).
+"""
+
 
 @dataclass(frozen=True)
 class TrainerOptions:

@@ -37,12 +37,6 @@ classifier takes for the likeliest is returned.
 MEAN_WEIGHTS = 0.999
 """The share of the running mean that is kept a step."""
 
-HEADLINE_SCHEME = {"on": "discriminator"}
-"""What teaches the generator unless it is said, by relation; `both` for all others. The published
-example trains on `discriminator`, and on `on` `both` drives generators over the edge
-(docs/paper-models.md).
-"""
-
 
 def train(
     data: Dataset,

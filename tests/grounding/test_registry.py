@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grounding import registry
-from grounding.paper.training import HEADLINE_SCHEME
+from grounding.paper.trainer_options import HEADLINE_SCHEME
 from grounding.registry import (
     GROUNDINGS,
     MODELS,

@@ -303,7 +303,7 @@ function checkSoon() { clearTimeout(checking); checking = setTimeout(check, 250)
 async function check() {
   if (state.hold || state.busy) { checkSoon(); return; }
   const stage = state.stage.number, kept = JSON.stringify(poses()), said = await ask("check", about({}));
-  if (said && state.stage.number === stage && kept === JSON.stringify(poses()) && !state.odd) { trouble(said.troubles); opinion(said.opinion); }
+  if (said && state.stage.number === stage && kept === JSON.stringify(poses()) && state.odd === null) { trouble(said.troubles); opinion(said.opinion); }
 }
 
 function trouble(lines, asked) {
