@@ -40,10 +40,7 @@ def named(cell: str) -> list[str]:
 FOLDERS = [(named(folder)[0], named(files)) for _, folder, files in rows(MAP, "## The map", "###")]
 DECISIONS = [
     (question, named(file)[0], named(name)[0])
-    for question, file, name in [
-        *rows(MAP, "### Where is it decided?", "##"),
-        *rows(README, "## Where is it in the code?", "##"),
-    ]
+    for question, file, name in rows(README, "## Where is it in the code?", "##")
 ]
 ASIDES = [
     (question, file, name)
