@@ -47,7 +47,7 @@ def compare(
 ) -> SearchResult:
     """Search in both loops, and once from the one into the other."""
     monkeypatch.setattr(restarts, "STALLED_STATES", STALL)
-    monkeypatch.setattr(search_module, "STALLED", STALL)
+    monkeypatch.setattr(search_module, "STALLED_STATES", STALL)
     results: list[SearchResult] = []
     for pays in (lambda entries: False, lambda entries: True, lambda entries: entries > 0):
         monkeypatch.setattr(selection, "pays", pays)
@@ -208,7 +208,7 @@ def test_a_search_that_stalls_begins_anew_and_finds_a_plan(
 ) -> None:
     """The same seed gives the same plan, whichever loop it begins in; it holds by the book."""
     for module in (restarts, search_module):
-        monkeypatch.setattr(module, "STALLED", 50)
+        monkeypatch.setattr(module, "STALLED_STATES", 50)
     monkeypatch.setattr(restarts, "SHORTEST_RESTART_STATES", 200)
     domain, problem = GENERATORS["depot"](8, Random(1))
     task = parse_task(problem, parse_domain(domain))
@@ -239,7 +239,7 @@ EITHER_TASK = """(define (problem either) (:domain either) (:objects a b c d)
 def test_restarts_prove_that_there_is_no_plan(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two facts of which one holds at a time, which the relaxation does not see."""
     for module in (restarts, search_module):
-        monkeypatch.setattr(module, "STALLED", 2)
+        monkeypatch.setattr(module, "STALLED_STATES", 2)
     monkeypatch.setattr(restarts, "SHORTEST_RESTART_STATES", 3)
     monkeypatch.setattr(selection, "pays", lambda entries: True)
     instantiated = instantiate(parse_task(EITHER_TASK, parse_domain(EITHER)))
