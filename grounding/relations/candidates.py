@@ -14,8 +14,9 @@ from grounding.relations.demonstration_text import BodyEntry
 from grounding.relations.grounding import LearnedRelation
 from grounding.relations.scenes import DemonstratedBodies, loaded, made, otherwise
 from grounding.separation import Obstacles, separations
+from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Scene
+from tamp.geometric.scene.scene import Body, Scene
 from tamp.simulation.drops import Drops, Item
 from tamp.simulation.engines import open_drops
 
@@ -93,7 +94,13 @@ def _at_rest(drops: Drops, scene: Scene, name: str, pose: Pose) -> Pose:
     ]
     body = scene.bodies[name]
     drops.set_up(Item(body.parts, body.mass, body.friction), others)
-    return Pose.from_matrix(drops.drop(pose.matrix, SECONDS))
+    return _on_floor(body, Pose.from_matrix(drops.drop(pose.matrix, SECONDS)))
+
+
+def _on_floor(body: Body, pose: Pose) -> Pose:
+    """Lift a pose out of the floor, into which an engine lets a body sink that fell onto it."""
+    sunk = max(0.0, -float(bounds(body.parts, pose)[0][2]))
+    return replace(pose, position=(*pose.position[:2], pose.position[2] + sunk))
 
 
 def _lifted(scene: Scene, name: str, pose: Pose) -> Pose:
