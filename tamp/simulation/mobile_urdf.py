@@ -13,6 +13,9 @@ from tamp.geometric.scene.scene import Box
 BASE_JOINTS = ("base_x", "base_y", "base_yaw")
 """Their names: along x and y of the world, then about z."""
 
+ROOT_LINK = "tamp_ground"
+"""The link that the base drives on, which no robot of a user has."""
+
 BASE_MASS = 100.0
 """Kilograms: heavy enough for an arm's swing not to shake it."""
 
@@ -39,12 +42,12 @@ def mobile_urdf(robot: Robot) -> str:
     x, y, yaw = BASE_JOINTS
 
     links = f"""
-  <link name="ground"/>
+  <link name="{ROOT_LINK}"/>
   <link name="{x}_slide">{_INERTIAL.format(20)}</link>
   <link name="{y}_slide">{_INERTIAL.format(20)}</link>
   <link name="{base.name}">{_INERTIAL.format(BASE_MASS)}
     <collision><origin xyz="{at}"/><geometry><box size="{size}"/></geometry></collision></link>
-  <joint name="{x}" type="prismatic"><parent link="ground"/><child link="{x}_slide"/>
+  <joint name="{x}" type="prismatic"><parent link="{ROOT_LINK}"/><child link="{x}_slide"/>
     <axis xyz="1 0 0"/>{_LIMIT}</joint>
   <joint name="{y}" type="prismatic"><parent link="{x}_slide"/><child link="{y}_slide"/>
     <axis xyz="0 1 0"/>{_LIMIT}</joint>
@@ -62,7 +65,7 @@ def _mount(base: str, arm: Robot) -> str:
     """Write the joint that fixes an arm's foot to the base."""
     at = " ".join(map(str, arm.T_base_arm.position))
     turned = " ".join(map(str, roll_pitch_yaw(arm.T_base_arm.rotation)))
-    return f"""  <joint name="{arm.prefix}mount" type="fixed">
+    return f"""  <joint name="tamp_{arm.prefix}mount" type="fixed">
     <parent link="{base}"/><child link="{arm.foot}"/><origin xyz="{at}" rpy="{turned}"/></joint>
 """
 

@@ -24,7 +24,7 @@ from tamp.geometric.loading.xml_file import read_xml
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Part, Scene, Sphere
-from tamp.simulation.mobile_urdf import mobile_urdf
+from tamp.simulation.mobile_urdf import ROOT_LINK, mobile_urdf
 from tamp.simulation.shapes import floor_under, inertia, mass_centre
 from tamp.simulation.world import FLOOR_NAME
 
@@ -47,6 +47,9 @@ meet but the robot itself and what it passes through.
 
 OTHER_ENGINE = "--engine pybullet may take it, where that is installed (Python 3.11)"
 """What to do about what MuJoCo refuses."""
+
+TAKEN_NAMES = ("world", FLOOR_NAME)
+"""What links are called otherwise in the model: MuJoCo's own world, and the floor."""
 
 _HEADER = '<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco>'
 
@@ -102,9 +105,10 @@ def new_model(robot: Robot | None) -> Model:
         spec = mujoco.MjSpec()
     else:
         text = mobile_urdf(robot)
-        # A link of this name would be MuJoCo's own world.
-        text = re.sub(r'((?:link name|link)=)"world"', rf'\1"{link_body("world")}"', text)
-        text = text.replace('<link name="ground"/>', f'{_HEADER}<link name="ground"/>')
+        for name in TAKEN_NAMES:
+            text = re.sub(rf'((?:link name|link)=)"{name}"', rf'\1"{link_body(name)}"', text)
+        root = f'<link name="{ROOT_LINK}"/>'
+        text = text.replace(root, f"{_HEADER}{root}")
         try:
             spec = mujoco.MjSpec.from_string(text)
         except (ValueError, mujoco.FatalError) as error:
@@ -247,8 +251,8 @@ def body_name(body: str) -> str:
 
 
 def link_body(link: str) -> str:
-    """Return the name of a robot's link in the model, where one name is taken."""
-    return "link:world" if link == "world" else link
+    """Return the name of a robot's link in the model, where some names are taken."""
+    return f"link:{link}" if link in TAKEN_NAMES else link
 
 
 def owner_of(geom: str) -> str:

@@ -19,6 +19,7 @@ from tamp.plan.write import plan_text
 from tamp.system.files import find_domain
 from tamp.verification.verify import verify
 from tests.commands.robot_folder.urdf import arm_text
+from tests.needs import INSTALLED
 
 BODY = """
 <link name="body"><inertial><mass value="30"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
@@ -94,11 +95,19 @@ def test_an_unknown_link_that_is_allowed_is_refused(both: Path, tmp_path: Path) 
         read_robot(folder)
 
 
-@pytest.mark.parametrize("seed", range(2))
-def test_either_arm_takes_a_can_to_the_cupboard(seed: int, both: Path) -> None:
-    domain = find_domain("two_arms_driving")
-    problem = tamp.load_problem("one_object", domain, robot=both)
+@pytest.mark.parametrize(("seed", "link"), [(0, "floor"), (1, "ground"), (0, "world")])
+def test_either_arm_takes_a_can_to_the_cupboard(
+    seed: int, link: str, both: Path, tmp_path: Path
+) -> None:
+    """Whatever the base is called: MuJoCo has a world and a floor of its own, both engines a ground."""
+    folder = tmp_path / "a" / "both"
+    folder.mkdir(parents=True)
+    text = BOTH.replace("../", f"{both.parent}/").replace("link: floor", f"link: {link}")
+    (folder / "robot.yaml").write_text(text, encoding="utf-8")
+
+    problem = tamp.load_problem("one_object", find_domain("two_arms_driving"), robot=folder)
     solution = tamp.solve(problem, max_time=60.0, seed=seed)
     assert solution.solved, solution.explanation
-    report = verify(json.loads(plan_text(solution)))
-    assert report.holds, report.text()
+    for engine in INSTALLED:
+        report = verify(json.loads(plan_text(solution)), engine=engine)
+        assert report.holds, report.text()
