@@ -43,5 +43,5 @@ def in_other_hands(
         if number != used and held is not None:
             world.used = number
             seen = Seen(poses, in_hand(world, number), world.tool(), frozenset())
+            world.used = used  # before whoever asks goes on
             yield from deviations({}, held, frozenset(), seen, None)
-            world.used = used
