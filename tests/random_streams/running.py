@@ -250,6 +250,8 @@ def compare(problem: Problem, ways: dict[str, Way]) -> Row:
             row["wrong"][name] = said
         elif outcome is Outcome.SOLVED and solvable is False:
             row["wrong"][name] = "the brute force finds no plan"
+        elif outcome is Outcome.INFEASIBLE and solvable:
+            row["wrong"][name] = "it is called infeasible, and the brute force finds a plan"
         elif outcome is not Outcome.SOLVED and solvable:
             row["missed"][name] = outcome.name
     return row

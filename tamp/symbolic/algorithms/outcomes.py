@@ -14,6 +14,7 @@ from tamp.symbolic.algorithms.explanation.explanation import (
     explain_infeasible,
 )
 from tamp.symbolic.algorithms.explanation.unachievable_facts import UnachievableFacts
+from tamp.symbolic.algorithms.optimistic.equal_outputs import equal_outputs_may_meet
 from tamp.symbolic.algorithms.planning_run import Run
 from tamp.symbolic.algorithms.result import Outcome, PlanAction, Result
 from tamp.symbolic.pddl.structs import Formula
@@ -38,10 +39,13 @@ def solved_result(run: Run, skeleton: Skeleton, values: dict[int, str]) -> Resul
 
 
 def infeasible_result(run: Run) -> Result:
-    """End the run where no plan is left: infeasible, unless something was given up too early."""
-    knowledge, task = run.knowledge, run.task
+    """End the run where no plan is left: infeasible, unless something was given up too early, or
+    equal values of different calls may make what placeholders do not show.
+    """
+    knowledge, task, problem = run.knowledge, run.task, run.task.problem
     optimistic, instantiated = run.optimistic.facts, run.optimistic.instantiated
-    outcome = Outcome.EXHAUSTED if knowledge.incomplete else Outcome.INFEASIBLE
+    hidden = problem.by_value and equal_outputs_may_meet(problem.task, problem.streams)
+    outcome = Outcome.EXHAUSTED if knowledge.incomplete or hidden else Outcome.INFEASIBLE
 
     achievable = {
         *task.initial_facts,
