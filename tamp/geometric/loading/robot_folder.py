@@ -236,10 +236,10 @@ def _hulls(file: Path) -> dict[str, list[Hull]]:
 
 
 def _allowed(node: YamlNode, names: list[str]) -> frozenset[tuple[str, str]]:
-    """Read lines of names: the first of each with all others of it."""
+    """Read lines of names, or lists of names with blanks: the first of each with all others."""
     pairs: set[tuple[str, str]] = set()
     for line in node.items():
-        words = line.text().split()
+        words = [one.text() for one in line.items()] if line.is_list() else line.text().split()
         for word in words:
             if word not in names:
                 raise line.error(f"unknown link '{word}'", found=word, choices=names)
