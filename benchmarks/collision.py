@@ -66,10 +66,11 @@ def samples(start: Array, end: Array, weights: Array) -> Array:
 
 
 def compare(
-    arrangement: Arrangement, plain: PlainFcl, confs: Array, edges: int, rng: np.random.Generator, weights: Array
+    arrangement: Arrangement, plain: PlainFcl, confs: Array, edges: int, rng: np.random.Generator
 ) -> Counter[str]:
     """Ask both about the configurations (n, 3 + joints) and about random edges between the free ones."""
     count: Counter[str] = Counter()
+    weights = levers(plain.robot)
     started = time.process_time()
     free = np.array([arrangement.free(conf) for conf in confs])
     count["states_ns"] = int(1e9 * (time.process_time() - started))
@@ -129,7 +130,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def of_robot(name: str, states: int, edges: int, scenes: int, seed: int) -> Counter[str]:
     """Compare on all scenes with one robot; every second time with a body in its hand."""
     robot = load_robot(name)
-    kinematics, weights = Kinematics(robot), levers(robot)
+    kinematics = Kinematics(robot)
     total: Counter[str] = Counter()
     for number in range(scenes):
         rng = np.random.default_rng((seed, number))
@@ -144,7 +145,7 @@ def of_robot(name: str, states: int, edges: int, scenes: int, seed: int) -> Coun
         confs = random_confs(rng, robot, states // scenes)
 
         wanted = math.ceil((edges - total["edges"]) / (scenes - number))  # crowded scenes may have none
-        count = compare(arrangement, plain, confs, wanted, rng, weights)
+        count = compare(arrangement, plain, confs, wanted, rng)
         stats = arrangement.stats
         count.update(
             {

@@ -104,7 +104,7 @@ class PlainFcl:
     def __init__(
         self, scene: Scene, robot: Robot, kinematics: Kinematics, poses: dict[str, Pose], attachment: Attachment | None
     ) -> None:
-        self.kinematics = kinematics
+        self.robot, self.kinematics = robot, kinematics
         self.opening = attachment.opening if attachment else robot.opening
         held = attachment.body if attachment else None
         self.obstacles = [(name, _object(part, (pose @ part.pose).matrix))

@@ -117,6 +117,7 @@ def yaml_text(robot: Robot, made_from: str, srdf: str | None = None) -> str:
         "urdf: robot.urdf",
         "base:",
         f"  drive: {robot.drive}",
+        *([] if robot.turning_radius is None else [f"  turning_radius: {robot.turning_radius!r}"]),
         f"  link: {_quoted(robot.base)}",
         f"  box: {{size: {_list(size)}, at: {_list(part.pose.position)}}}",
         f"  velocity: {_list(robot.velocity[:3])}",

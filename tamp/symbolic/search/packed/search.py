@@ -38,8 +38,9 @@ def fits(names: Sequence[str], successors: Successors) -> bool:
     """Check that the compiled loop knows the heuristics, and has all guards at hand; that no goal
     state is none because its derivation is forbidden.
     """
-    known = all(name in KINDS for name in names)
-    return known and successors.lists_guards and math.inf not in successors.axiom_cost
+    if math.inf in successors.axiom_cost:
+        return False
+    return all(name in KINDS for name in names) and successors.lists_guards
 
 
 def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Plan | None:
