@@ -78,8 +78,12 @@ def test_without_anything_in_common_there_is_no_condition() -> None:
 def test_two_conditions_where_each_rejects_what_the_other_does_not() -> None:
     good = np.array([[0.3, 0.6], [0.3, 0.6], [0.31, 0.62], [0.32, 0.61]])
     bad = np.array([[0.3, 0.1], [0.3, 0.2], [0.31, 0.9], [0.8, 0.6], [0.9, 0.6], [0.1, 0.61]])
-    ranked = found(evidence(good, bad))
+    e, s = evidence(good, bad), SETTINGS
+    ranked = found(e)
     assert next(iter(ranked)) == (0, 1)
+    by_chance = (np.abs(e.base - [0.31, 0.61]) < 0.0201).all(axis=1).mean()
+    worth = 4 / (1 + 6 / s.fade) * np.log((1 + s.floor) / (by_chance + s.floor))
+    assert ranked[0, 1] == pytest.approx(worth + 6 * RIGHT - 2 * s.small)
     assert max(ranked[0,], ranked[1,]) < ranked[0, 1]
     assert (0, 1) not in found(evidence(good, bad), replace(SETTINGS, depth=1))
 
