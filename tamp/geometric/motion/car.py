@@ -14,7 +14,7 @@ import numpy as np
 
 from tamp.geometric.motion.checker import EdgeTest
 from tamp.geometric.motion.differential import YAW_COLUMNS
-from tamp.geometric.motion.path import inside, unwrap
+from tamp.geometric.motion.path import inside, nearest, unwrap
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
@@ -31,6 +31,9 @@ heading by half of it."""
 
 RETREATS_M = (0.3, 0.6, 1.0, 1.5)
 """Metres to back away straight from furniture before turning, and to come from before the goal."""
+
+SPREAD = 8
+"""Of a curve every so manieth edge is checked first, then their neighbours."""
 
 MAX_EDGE_M = 2.0
 """The longest edge of the trees, metres of its curve."""
@@ -55,17 +58,21 @@ def drive_curves(
         checks: Curves that RRTConnect may ask for.
         deadline: Outer cap on the time.
     """
-    from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
+    from tamp.geometric.motion.reeds_shepp import curve
+    from tamp.geometric.motion.sampling_based import PlaneSpace, connect
 
     plane = PlaneSpace(room.x, room.y, turning_radius)
+    low, high = (np.array([room.x[k], room.y[k]]) for k in (0, 1))
     step = min(CURVE_STEP_M, CURVE_STEP_RAD * turning_radius)
 
     def free_curve(a: Array, b: Array) -> Array | None:
-        samples = unwrap(curve(plane, a, b, step), YAW_COLUMNS)
-        free = all(inside(room, base) for base in samples) and all(
-            edge_free(c, d) for c, d in itertools.pairwise(samples)
-        )
-        return samples if free else None
+        samples = curve(plane, a, b, step)
+        samples[-1] = nearest(samples[-2], samples[-1], YAW_COLUMNS)
+        if (samples[:, :2] < low).any() or (samples[:, :2] > high).any():
+            return None
+        spread = (range(first, len(samples) - 1, SPREAD) for first in range(SPREAD))
+        order = itertools.chain.from_iterable(spread)  # what is in the way is met sooner
+        return samples if all(edge_free(samples[k], samples[k + 1]) for k in order) else None
 
     def through(stations: list[Array]) -> Array | None:
         pieces: list[Array] = []

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from tamp.geometric.motion.car import CURVE_STEP_RAD, drive_curves
-from tamp.geometric.motion.sampling_based import PlaneSpace, curve
+from tamp.geometric.motion.reeds_shepp import curve
+from tamp.geometric.motion.sampling_based import PlaneSpace
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline

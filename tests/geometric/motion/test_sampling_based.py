@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.sampling_based import JointSpace, PlaneSpace, connect, curve
+from tamp.geometric.motion.reeds_shepp import curve
+from tamp.geometric.motion.sampling_based import JointSpace, PlaneSpace, connect
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline, OutOfTime
 from tests.clock import unhindered
