@@ -32,7 +32,8 @@ def ask(chosen: Ask) -> None:
     """Run tamp-learn ask.
 
     Raises:
-        InputError: Bad demonstrations, or an answer that is none.
+        InputError: Bad demonstrations, no scene in which the relation would be proposed, or an
+            answer that is none.
     """
     rng = np.random.default_rng(chosen.seed)
     state = _Learned.of(chosen.relation.lower(), chosen.demos, rng)
@@ -40,6 +41,8 @@ def ask(chosen: Ask) -> None:
         print(f"missing: {line}")
 
     pool = candidates(state.relation, examples_of(state.shown), chosen.pool, rng)
+    if not pool:
+        raise InputError("no scene to ask about was found", remedy="Show more demonstrations")
     situations = joined([situation_of(one.scene, one.arguments) for one in pool])
     evidence = gather(state.rows(True), state.rows(False), rng)
     answered = 0

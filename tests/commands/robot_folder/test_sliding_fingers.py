@@ -90,9 +90,10 @@ def test_the_tool_points_out_of_the_hand_with_the_tips_before_it(kind: str) -> N
     assert np.linalg.det(R) == pytest.approx(1.0)
 
 
-def test_a_hand_that_points_elsewhere_has_its_tool_there() -> None:
-    """Everything turned about y by 90 degrees: z becomes x."""
-    turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, np.pi / 2, 0.0))
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_hand_that_points_elsewhere_has_its_tool_there(side: float) -> None:
+    """Everything turned about y by 90 degrees, this way or that: z becomes x, or -x."""
+    turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, side * np.pi / 2, 0.0))
     joints, hulls = zip(finger(1.0), finger(-1.0), strict=True)
     moved = [replace(joint, origin=turn @ joint.origin) for joint in joints]
     palm = hull(turn.apply(PALM.vertices))
@@ -102,7 +103,7 @@ def test_a_hand_that_points_elsewhere_has_its_tool_there() -> None:
     straight = made()
     expected = (turn @ straight.T_hand_tool).position
     assert gripper.T_hand_tool.position == pytest.approx(expected, abs=1e-9)
-    assert gripper.T_hand_tool.rotation[:, 2] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
+    assert gripper.T_hand_tool.rotation[:, 2] == pytest.approx([side, 0.0, 0.0], abs=1e-9)
 
 
 def test_the_least_that_both_can_do_is_the_opening() -> None:
