@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations, count
 
 import numpy as np
 from numpy.typing import NDArray
@@ -166,22 +167,28 @@ def _coarser(vertices: Array, equations: Array) -> Array:
 
 def joined(hulls: Sequence[Hull], link: str) -> tuple[Hull, ...]:
     """Merge hulls of one link while that adds next to no volume: fewer make fewer pairs."""
-    left = [(hull, _volume(hull)) for hull in hulls]
-    merged = True
-    while merged and len(left) > 1:
-        merged = False
-        for i in range(len(left)):
-            for j in range(i + 1, len(left)):
-                both = hull_of(np.concatenate([left[i][0].vertices, left[j][0].vertices]), link)
-                volume = _volume(both)
-                if volume <= JOINED * (left[i][1] + left[j][1]):
-                    left = [one for k, one in enumerate(left) if k not in (i, j)]
-                    left.append((both, volume))
-                    merged = True
-                    break
-            if merged:
-                break
-    return tuple(hull for hull, _ in left)
+    left = {number: (hull, _volume(hull)) for number, hull in enumerate(hulls)}
+    apart: set[tuple[int, int]] = set()
+    numbers = count(len(hulls))
+
+    def merge_two() -> bool:
+        """Merge the first pair that may be; what was asked of the others is remembered."""
+        for first, second in combinations(left, 2):
+            if (first, second) in apart:
+                continue
+            (one, volume), (other, more) = left[first], left[second]
+            both = hull_of(np.concatenate([one.vertices, other.vertices]), link)
+            whole = _volume(both)
+            if whole <= JOINED * (volume + more):
+                del left[first], left[second]
+                left[next(numbers)] = (both, whole)
+                return True
+            apart.add((first, second))
+        return False
+
+    while merge_two():
+        pass
+    return tuple(hull for hull, _ in left.values())
 
 
 def _volume(hull: Hull) -> float:
