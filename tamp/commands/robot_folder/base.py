@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tamp.commands.robot_folder.arm import Arm
+from tamp.errors import InputError
+from tamp.geometric.loading.robot_base import SUNK_M
 from tamp.geometric.robot.robot import Link, Robot
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
@@ -40,13 +42,19 @@ def choose_base(
 ) -> tuple[Part, Pose, tuple[float, float, float], tuple[float, float, float]]:
     """Choose the base's box and where the arm is on it: a plate under an arm that does not drive,
     our box under one that has no base, else the box around the robot's own.
+
+    Raises:
+        InputError: Mounted so, what the arm stands on reaches into the floor.
     """
-    mount = None
-    if mount_at is not None:
-        mount = Pose.from_xyz_yaw(*mount_at)
+    mount = None if mount_at is None else Pose.from_xyz_yaw(*mount_at)
     own = len(arm.groups[0].links) > 1 and _tall(arm, foot)
     low, _ = bounds(foot.parts, arm.T_root_foot) if foot.parts else (np.zeros(3), np.zeros(3))
 
+    if mount_at is not None and mount_at[2] + low[2] < -SUNK_M:
+        raise InputError(
+            f"--mount: {foot.name} reaches {-mount_at[2] - low[2]:.3g} m into the floor",
+            remedy=f"Mount it {-low[2]:.3g} m high or more",
+        )
     if drive == "fixed":
         top = height + AIR + PLATE[2]
         T_base_root = mount or Pose((0.0, 0.0, top + max(0.0, -float(low[2])) + 1e-3))
@@ -59,7 +67,8 @@ def choose_base(
             _around(foot, T_base_root @ arm.T_root_foot),
             T_base_root @ arm.T_root_foot, BASE_VELOCITY, BASE_ACCELERATION,
         )  # fmt: skip
-    T_base_root = mount or Pose(MOUNT)
+    x, y, z = MOUNT
+    T_base_root = mount or Pose((x, y, max(z, CLEAR - float(low[2]))))  # legs stand beside the box
     box = Part(Box(BOX), Pose((0.0, 0.0, CLEAR + BOX[2] / 2)))
     return box, T_base_root @ arm.T_root_foot, BASE_VELOCITY, BASE_ACCELERATION
 

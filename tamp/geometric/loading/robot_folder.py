@@ -11,17 +11,12 @@ from pathlib import Path
 
 import tamp.geometric.robot
 from tamp.errors import InputError
+from tamp.geometric.loading.robot_base import check_above_floor, read_turning_radius
 from tamp.geometric.loading.robot_gripper import read_gripper, read_pose
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.robot.arms import Mobile, as_arm, joined
-from tamp.geometric.robot.robot import (
-    DRIVES,
-    LIMIT_MARGIN_RAD,
-    TURNING_RADII_M,
-    Link,
-    Robot,
-)
+from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
 from tamp.geometric.robot.robot_arrays import damaged, numbers, read_arrays
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
@@ -105,7 +100,7 @@ def _one(root: YamlNode, folder: Path) -> Robot:
         urdf=_urdf(top["urdf"], folder),
         folder=folder,
         drive=base["drive"].text(DRIVES, "drive"),
-        turning_radius=_turning_radius(base),
+        turning_radius=read_turning_radius(base),
         locked=None if locked is None else names.index(locked),
         effort=_each(entries, "effort"),
         force=gripper.force,
@@ -113,23 +108,8 @@ def _one(root: YamlNode, folder: Path) -> Robot:
         payload=arm["payload"].number(positive=True) if "payload" in arm else math.inf,
     )
     _check_home(robot, arm["home"])
+    check_above_floor(robot, arm["mount"])
     return robot
-
-
-def _turning_radius(base: Mapping[str, YamlNode]) -> float | None:
-    """Read how tight a circle the base drives, metres: of a car, and of a car alone."""
-    drive = base["drive"].text()
-    if "turning_radius" in base:
-        if drive != "car":
-            raise base["turning_radius"].error(
-                f"a turning_radius is a car's, not of a {drive} base"
-            )
-        return base["turning_radius"].number(low=TURNING_RADII_M[0], high=TURNING_RADII_M[1])
-    if drive == "car":
-        raise base["drive"].error(
-            "a car needs a turning_radius", remedy="That of the tightest circle, metres, beside it"
-        )
-    return None
 
 
 def _several(root: YamlNode, folder: Path) -> Robot:
@@ -144,7 +124,7 @@ def _several(root: YamlNode, folder: Path) -> Robot:
         acceleration=base["acceleration"].numbers(3, positive=True),
         drive=base["drive"].text(DRIVES, "drive"),
         folder=folder,
-        turning_radius=_turning_radius(base),
+        turning_radius=read_turning_radius(base),
     )
     entries = top["arms"].mapping()
     if len(entries) < 2:
@@ -159,6 +139,7 @@ def _several(root: YamlNode, folder: Path) -> Robot:
         if own.beside:
             raise entry["robot"].error(f"the robot '{own.name}' has several arms itself")
         arms.append(as_arm(body, own, name, read_pose(entry["mount"])))
+        check_above_floor(arms[-1], entry["mount"])
     names = [body.base.name, *(link.name for arm in arms for link in arm.links[1:])]
     return joined(arms, _allowed(top["allowed"], names) if "allowed" in top else frozenset())
 

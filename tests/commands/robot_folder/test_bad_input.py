@@ -88,6 +88,9 @@ CASES = {
     "radius-range": (
         arm_text(), (*ARM, "--base", "car", "--turning-radius", "50"), r"--turning-radius 50.*from 0.05 to 20",
     ),
+    "in-the-floor": (
+        arm_text(), (*ARM, "--mount", "0", "0", "-0.2", "0"), r"--mount: foot reaches 0.2\d* m into the floor.*Mount it",
+    ),
     "two-roots": (arm_text(extra='<link name="alone"/>'), ARM, r"several roots: foot, alone"),
 }  # fmt: skip
 
@@ -164,6 +167,10 @@ DAMAGED = {
     "car-radius": (
         yaml("drive: differential", "drive: car\n  turning_radius: 99.0"),
         r"turning_radius: must be at most 20, found 99",
+    ),
+    "in-the-floor": (
+        yaml("mount: {xyz: [", "mount: {xyz: [0.0, 0.0, -0.3], quaternion: [0.0, 0.0, 0.0, 1.0]} #"),
+        r"arm.mount: foot reaches 0.3\d* m into the floor. Mount it higher",
     ),
     "home": (yaml("home: [", "home: [99, "), r"home: expected 6 numbers, found 7"),
     "key": (yaml("  foot:", "  feet:"), r"unknown key 'feet'. Choices: foot, mount"),
