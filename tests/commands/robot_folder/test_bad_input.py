@@ -89,7 +89,8 @@ CASES = {
         arm_text(), (*ARM, "--base", "car", "--turning-radius", "50"), r"--turning-radius 50.*from 0.05 to 20",
     ),
     "in-the-floor": (
-        arm_text(), (*ARM, "--mount", "0", "0", "-0.2", "0"), r"--mount: foot reaches 0.2\d* m into the floor.*Mount it",
+        arm_text(), (*ARM, "--mount", "0", "0", "-0.2", "0"),
+        r"--mount: foot reaches 0.2\d* m into the floor.*Mount it",
     ),
     "two-roots": (arm_text(extra='<link name="alone"/>'), ARM, r"several roots: foot, alone"),
 }  # fmt: skip
