@@ -65,7 +65,7 @@ def random_pose(rng: np.random.Generator, low: Array, high: Array) -> Pose:
     return Pose((float(px), float(py), float(pz)), (float(x), float(y), float(z), float(w)))
 
 
-def random_scene(rng: np.random.Generator, movable: int = 12) -> Scene:
+def random_scene(rng: np.random.Generator, movable: int = 12, robot: str = "panda_mobile") -> Scene:
     """Two tables, a cupboard and bodies, some of several parts, about the origin; `held` is small and movable."""
     places = [(1.1, 0.0, 0.0), (-1.2, 0.4, 1.5), (0.1, -1.3, 0.3)]
     kinds = [table((1.2, 0.7, 0.72)), cupboard((0.9, 0.42, 1.3)), table((0.8, 0.8, 0.5))]
@@ -84,15 +84,15 @@ def random_scene(rng: np.random.Generator, movable: int = 12) -> Scene:
     return Scene(
         "random",
         {b.name: b for b in bodies},
-        RobotStart("panda_mobile", (0.0, 0.0, 0.0)),
+        RobotStart(robot, (0.0, 0.0, 0.0)),
         Room((-2.0, 2.0), (-2.0, 2.0)),
     )
 
 
 def random_confs(rng: np.random.Generator, robot: Robot, count: int) -> Array:
-    """Configurations (count, 10) about the origin."""
+    """Configurations (count, 3 + joints) about the origin."""
     return np.hstack([rng.uniform(-1.0, 1.0, (count, 2)), rng.uniform(-3, 3, (count, 1)),
-                      rng.uniform(robot.lower, robot.upper, (count, 7))])  # fmt: skip
+                      rng.uniform(robot.lower, robot.upper, (count, len(robot.joints)))])  # fmt: skip
 
 
 class PlainFcl:
@@ -104,7 +104,7 @@ class PlainFcl:
     def __init__(
         self, scene: Scene, robot: Robot, kinematics: Kinematics, poses: dict[str, Pose], attachment: Attachment | None
     ) -> None:
-        self.kinematics = kinematics
+        self.robot, self.kinematics = robot, kinematics
         self.opening = attachment.opening if attachment else robot.opening
         held = attachment.body if attachment else None
         self.obstacles = [(name, _object(part, (pose @ part.pose).matrix))
@@ -122,7 +122,7 @@ class PlainFcl:
             body = scene.bodies[attachment.body]
             self.parts += [(body.name, part.pose.matrix, _object(part, np.eye(4))) for part in body.parts]
         group = robot.grippers | {held}
-        self.grounded = {link.name for link in robot.links[:2]}
+        self.grounded = {robot.base, robot.foot}
         self.pairs = [
             (a, b) for b in range(len(self.parts)) for a in range(b)
             if not {self.parts[a][0], self.parts[b][0]} <= group and self.parts[a][0] != self.parts[b][0]

@@ -159,7 +159,7 @@ def _check_scenes(arrays: Arrays, kinds: int, templates: int) -> None:
     _check_rigid("region", arrays["region"])
     _refuse("size", ~(size[:, :2] > 0.0) | (size[:, :2] > LARGEST), "is no size")
     _refuse("size", ~(size[:, 2] > 0.0), "is no height")  # that above an open surface is infinite
-    _refuse("box", ~(np.abs(box) <= FAR), "is not finite")
+    _refuse("box", ~(np.abs(box) <= FAR), "is too far away")
     _refuse("box", box[:, 0] > box[:, 1], "is beyond the other corner")
 
 
@@ -179,7 +179,7 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
     lengths = np.array([3, 2, 1, 0])[shape]
     used = np.arange(3) < lengths[:, None]
     _refuse("part_size", used & ~((size > 0.0) & (size <= LARGEST)), "is no length")
-    _refuse("part_pose", ~(np.abs(pose[:, :3]) <= FAR), "is not finite")
+    _refuse("part_pose", ~(np.abs(pose[:, :3]) <= FAR), "is too far away")
     _refuse(
         "part_pose",
         ~(np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1.0) <= RIGID),
@@ -198,7 +198,7 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
             )
     _refuse("part_vertices", hull & (counts["vertices"] < 4), "says fewer corners than a solid has")
     _refuse("part_faces", hull & (counts["faces"] < 4), "says fewer triangles than a solid has")
-    _refuse("vertices", ~(np.abs(arrays["vertices"]) <= FAR), "is not finite")
+    _refuse("vertices", ~(np.abs(arrays["vertices"]) <= FAR), "is too far away")
     most = np.repeat(counts["vertices"], counts["faces"])[:, None]
     _refuse(
         "faces", (arrays["faces"] < 0) | (arrays["faces"] >= most), "is none of its hull's corners"

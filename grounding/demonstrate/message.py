@@ -72,7 +72,8 @@ def _pose(name: str, numbers: object) -> Pose:
         raise InputError(f"the pose of {name} holds what is no finite number")
     matrix = np.array(numbers, dtype=float).reshape(4, 4)
     turn = matrix[:3, :3]
-    if np.abs(turn @ turn.T - np.eye(3)).max() > 1e-3 or np.linalg.det(turn) < 0:
+    skewed = np.abs(turn @ turn.T - np.eye(3)).max() > 1e-3 or np.linalg.det(turn) < 0
+    if skewed or np.abs(matrix[3] - [0.0, 0.0, 0.0, 1.0]).max() > 1e-3:
         raise InputError(f"the pose of {name} is no rigid transform")
     if np.abs(matrix[:3, 3]).max() > FARTHEST:
         raise InputError(f"{name} is farther than {FARTHEST:g} m away")

@@ -14,7 +14,7 @@ import tyro
 
 from tamp.errors import InputError
 from tamp.system.command_line import as_command
-from tamp.system.options import Above, OneOf, check_rules, read_command
+from tamp.system.options import Above, Between, OneOf, check_rules, read_command
 from tamp.system.progress import Progress, say
 from tamp.system.scratch import scratch_folder
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 OURS = "the fingers of the URDF do not close: a gripper of ours takes their place"
 
-DRIVES = ("omnidirectional", "differential", "fixed")
+DRIVES = ("omnidirectional", "differential", "car", "fixed")
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,14 @@ class Make:
     the arm, its end effectors which the gripper; a state proposes the home, and pairs that it
     disables are checked where they meet."""
     base: Annotated[str, tyro.conf.arg(metavar="NAME"), OneOf("drive", DRIVES)] = "omnidirectional"
-    """omnidirectional, differential (turns on the spot, drives straight), or fixed."""
+    """omnidirectional, differential (turns on the spot, drives straight), car (arcs and straight
+    lines, forwards and backwards; --turning-radius says how tight), or fixed."""
+    turning_radius: Annotated[
+        float | None,
+        tyro.conf.arg(metavar="M"),
+        Between(0.05, 20.0, "--turning-radius {value} is not from 0.05 to 20 m"),
+    ] = None
+    """Of the tightest circle that the middle of a car's base drives, metres."""
     gripper: Annotated[tuple[str, str] | None, tyro.conf.arg(metavar="LEFT RIGHT")] = None
     """The sliding finger joints of the URDF's own gripper."""
     axis: Annotated[str | None, tyro.conf.arg(metavar="AXIS")] = None
@@ -119,6 +126,7 @@ def main(shown: Progress, arguments: Sequence[str] | None = None) -> int:
 
 def _make(options: Make, shown: Progress) -> None:
     _check_out(options.out)
+    _check_drive(options)
     from tamp.commands.robot_folder.description import find_urdf
     from tamp.commands.robot_folder.mjcf import as_urdf
 
@@ -206,6 +214,7 @@ def _wanted(options: Make, urdf: Path, file: Path | None = None) -> Wanted:
         tip=tip,
         out=options.out.absolute(),
         drive=options.base,
+        turning_radius=options.turning_radius,
         fingers=options.gripper or (None if options.suction else found),
         opening=options.opening,
         force=options.force,
@@ -237,6 +246,17 @@ def _fixed(words: Sequence[str]) -> dict[str, float]:
                 f"--stands {word}: JOINT=VALUE is expected, in radians or metres"
             ) from None
     return found
+
+
+def _check_drive(options: Make) -> None:
+    """Refuse a car without its turning radius, and a turning radius without a car."""
+    if options.base == "car" and options.turning_radius is None:
+        raise InputError(
+            "--base car needs --turning-radius",
+            remedy="Say the radius of the tightest circle that its middle drives, metres",
+        )
+    if options.base != "car" and options.turning_radius is not None:
+        raise InputError("--turning-radius is of --base car alone", remedy="Leave one of them out")
 
 
 def _check_out(out: Path) -> None:

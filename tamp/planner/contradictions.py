@@ -76,11 +76,16 @@ def _after(action: Action, arguments: tuple[str, ...], at: Mapping[str, str]) ->
         if one.atom.predicate == "at-pose" and one.condition == And(())
     ]
     for effect in sorted(plain, key=lambda one: one.adds):
-        body, pose = (table.get(term, term) for term in effect.atom.terms)
-        if effect.adds:
+        every = {one.name for one in effect.parameters}
+        body, pose = (
+            None if term in every else table.get(term, term) for term in effect.atom.terms
+        )
+        if not effect.adds:
+            gone = [one for one in after if body in (None, one) and pose in (None, after[one])]
+            for one in gone:
+                del after[one]
+        elif body is not None and pose is not None:
             after[body] = pose
-        elif after.get(body) == pose:
-            del after[body]
     return after
 
 

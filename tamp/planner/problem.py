@@ -12,7 +12,7 @@ from tamp.geometric.context import Context
 from tamp.geometric.loading.load import LoadedProblem
 from tamp.geometric.loading.overlaps import check_overlaps
 from tamp.geometric.loading.robots import ASSETS, ROBOTS, load_robot
-from tamp.geometric.motion.planners import COMPILED, PLANNERS, STEERINGS
+from tamp.geometric.motion.planners import COMPILED, PLANNERS, STEERINGS, STEERINGS_OF
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.samplers.choice import Grounding, Registry, make_mixture
 from tamp.geometric.samplers.registry import SAMPLERS
@@ -177,8 +177,13 @@ def _context(
         for relation, made in served.generators.items()
     }
     robot = load_robot(scene.robot.model)
-    usual = "differential" if robot.drive == "differential" else "se2"
-    context = Context(scene, robot, mixtures, steering or usual, holding, planner)
+    can = STEERINGS_OF[robot.drive]
+    if steering is not None and steering not in can:
+        raise InputError(
+            f"the base of {robot.name} cannot move by '{steering}': its drive is {robot.drive}",
+            choices=can,
+        )
+    context = Context(scene, robot, mixtures, steering or can[0], holding, planner)
     prepare(scene.bodies[name] for name in scene.movable)
     if robot.drive != "fixed":
         _ = context.reachability  # read now: what is damaged is told before planning

@@ -37,6 +37,8 @@ def settled_facts(
 ) -> set[Fact]:
     """Say of which bodies the goal says where they are to be, and on or in which places.
 
+    A body that it wants on some place, whichever, may stay anywhere: as far as the goal goes.
+
     Args:
         domain: The domain.
         goal: The goal; what all of it needs counts, not what may do instead of something else.
@@ -52,9 +54,10 @@ def settled_facts(
     found: set[Fact] = set()
     for atom in () if now else necessary_atoms(goal):
         words = (atom.predicate, *atom.terms)
-        if atom.predicate in PLACE_RELATIONS and len(atom.terms) == 2 and words[1] in movable:
-            found.add((MEANT, *atom.terms))
-            bound.add(words[1])
+        if atom.predicate in PLACE_RELATIONS and len(atom.terms) == 2:
+            if words[1] in movable and not words[2].startswith("?"):
+                found.add((MEANT, *atom.terms))
+                bound.add(words[1])
         elif words in wanted:
             bound.add(words[1])
     loose = {name for name in movable if name not in bound or (PORTABLE, name) in facts}

@@ -205,7 +205,7 @@ class PlanTimer:
             points[:, 2] += math.tau * round(float(self._base[2] - points[0, 2]) / math.tau)
 
         # A rounded corner would slide sideways.
-        sharp = path.part == "base" and context.steering == "differential"
+        sharp = path.part == "base" and context.steering != "se2"
         limits = velocity[joints], acceleration[joints]
         timed = time_path(points, *limits, None if sharp else edge_free)
         return Segment(

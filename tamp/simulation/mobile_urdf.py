@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from xml.etree import ElementTree
+from xml.sax.saxutils import escape, quoteattr
 
 from tamp.errors import InputError
 from tamp.geometric.robot.robot import Robot
@@ -40,24 +41,25 @@ def mobile_urdf(robot: Robot) -> str:
     size = " ".join(map(str, base.parts[0].shape.size))
     at = " ".join(map(str, base.parts[0].pose.position))
     x, y, yaw = BASE_JOINTS
+    name = quoteattr(base.name)
 
     links = f"""
   <link name="{ROOT_LINK}"/>
   <link name="{x}_slide">{_INERTIAL.format(20)}</link>
   <link name="{y}_slide">{_INERTIAL.format(20)}</link>
-  <link name="{base.name}">{_INERTIAL.format(BASE_MASS)}
+  <link name={name}>{_INERTIAL.format(BASE_MASS)}
     <collision><origin xyz="{at}"/><geometry><box size="{size}"/></geometry></collision></link>
   <joint name="{x}" type="prismatic"><parent link="{ROOT_LINK}"/><child link="{x}_slide"/>
     <axis xyz="1 0 0"/>{_LIMIT}</joint>
   <joint name="{y}" type="prismatic"><parent link="{x}_slide"/><child link="{y}_slide"/>
     <axis xyz="0 1 0"/>{_LIMIT}</joint>
-  <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link="{base.name}"/>
+  <joint name="{yaw}" type="revolute"><parent link="{y}_slide"/><child link={name}/>
     <axis xyz="0 0 1"/>{_LIMIT}</joint>
 {"".join(_mount(base.name, arm) for arm in robot.arms)}"""
 
     if robot.beside:
         arms = "".join(map(_renamed, robot.arms))
-        return f'<robot name="{robot.name}">{links}{arms}</robot>'
+        return f"<robot name={quoteattr(robot.name)}>{links}{arms}</robot>"
     return re.sub(r"(<robot[^>]*>)", lambda match: match[1] + links, _text(robot), count=1)
 
 
@@ -65,14 +67,17 @@ def _mount(base: str, arm: Robot) -> str:
     """Write the joint that fixes an arm's foot to the base."""
     at = " ".join(map(str, arm.T_base_arm.position))
     turned = " ".join(map(str, roll_pitch_yaw(arm.T_base_arm.rotation)))
-    return f"""  <joint name="tamp_{arm.prefix}mount" type="fixed">
-    <parent link="{base}"/><child link="{arm.foot}"/><origin xyz="{at}" rpy="{turned}"/></joint>
+    name = quoteattr(f"tamp_{arm.prefix}mount")
+    return f"""  <joint name={name} type="fixed">
+    <parent link={quoteattr(base)}/><child link={quoteattr(arm.foot)}/>
+    <origin xyz="{at}" rpy="{turned}"/></joint>
 """
 
 
 def _text(arm: Robot) -> str:
     """Read an arm's own description, with its meshes by full path."""
-    return arm.urdf.read_text(encoding="utf-8").replace("package://", f"{arm.urdf.parent}/")
+    folder = escape(str(arm.urdf.parent), {'"': "&quot;", "'": "&apos;"})
+    return arm.urdf.read_text(encoding="utf-8").replace("package://", f"{folder}/")
 
 
 def _renamed(arm: Robot) -> str:

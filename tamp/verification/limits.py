@@ -25,6 +25,8 @@ ACCELERATION_LIMIT_SHARE = 1.2
 """Share of an acceleration limit that is still kept: measured between samples it is coarse."""
 SIDEWAYS_SHARE = 0.02
 """Share of a differential drive's way that may be sideways: samples are chords."""
+TURNING_SHARE = 1.02
+"""Share of the tightest turn of a car that is still kept: chords are shorter than arcs."""
 POSITION_ROUNDING = 2e-6
 """Metres or radians by which a written position may be rounded."""
 ACCELERATION_WINDOW_S = 0.02
@@ -122,7 +124,7 @@ def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[LimitViolation]
             by = float(moved.max())
             at = float(times[int(moved.argmax())])
             yield LimitViolation("limit", at, f"the base moves by {by:.2g}, and it is fixed", by)
-    elif robot.drive == "differential":
+    elif robot.drive in ("differential", "car"):
         heading = (rows[:-1, 2] + rows[1:, 2]) / 2
         sideways = np.abs(step[:, 1] * np.cos(heading) - step[:, 0] * np.sin(heading))
         excess = sideways - RANGE_TOLERANCE - SIDEWAYS_SHARE * np.linalg.norm(step[:, :2], axis=1)
@@ -130,6 +132,19 @@ def _driven(robot: Robot, times: Array, rows: Array) -> Iterator[LimitViolation]
             at = int(excess.argmax())
             by = float(sideways[at])
             message = f"the base slides sideways by {1000 * by:.2g} mm, and its wheels do not"
+            yield LimitViolation("limit", float(times[at]), message, by)
+
+    if robot.turning_radius is not None:
+        turned = np.abs(step[:, 2])
+        straight = np.linalg.norm(step[:, :2], axis=1)
+        most = TURNING_SHARE * straight / robot.turning_radius + RANGE_TOLERANCE
+        if (turned > most).any():
+            at = int(np.argmax(turned - most))
+            by = float(turned[at])
+            message = (
+                f"the base turns by {by:.2g} rad while it drives {1000 * straight[at]:.2g} mm, and "
+                f"it is a car that turns within {robot.turning_radius:g} m"
+            )
             yield LimitViolation("limit", float(times[at]), message, by)
 
 

@@ -13,6 +13,7 @@ TRAINING = [
     "paper/test_critic.py",
     "paper/test_encoders.py",
     "paper/test_runtime.py",
+    "paper/test_trainer_state.py",
     "paper/test_training.py",
     "relational/test_models.py",
     "test_cli.py",

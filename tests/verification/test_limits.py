@@ -116,6 +116,23 @@ def test_wheels_do_not_slide_sideways_and_a_fixed_base_not_at_all(
         assert ahead["limit"].message == "the base moves by 0.5, and it is fixed"
 
 
+def test_a_car_turns_no_tighter_than_it_can_and_not_on_the_spot(robot: Robot) -> None:
+    car = replace(robot, drive="car", turning_radius=0.5)
+
+    def arc(radius: float) -> StoredSegment:
+        """A quarter of a circle to the left, driven backwards."""
+        turned = np.linspace(0.0, -np.pi / 2, 200)
+        rows = np.column_stack([radius * np.sin(turned), radius * (1 - np.cos(turned)), turned])
+        return base(np.linspace(0, 60, 200), rows)
+
+    assert "limit" not in found(car, arc(0.5))
+    tight = found(car, arc(0.45))["limit"]
+    assert "it is a car that turns within 0.5 m" in tight.message
+    assert "limit" in found(car, base([0, 9], [[0, 0, 0], [0, 0, 0.5]]))
+    assert "limit" in found(car, base([0, 9], [[0, 0, 0], [0, 0.5, 0]]))
+    assert "limit" not in found(car, base([0, 9], [[0, 0, 0], [0.5, 0, 0]]))
+
+
 def test_fingers_open_no_wider_and_no_faster_than_they_can(robot: Robot) -> None:
     wide = StoredSegment("gripper", np.array([0.0, 1.0]), np.empty((2, 0)), np.array([0.08, 0.09]))
     assert found(robot, wide)["limit"].amount == pytest.approx(0.01)

@@ -183,6 +183,7 @@ def _robot(
         urdf=file,
         folder=wanted.out,
         drive=wanted.drive,
+        turning_radius=wanted.turning_radius,
         effort=arm.effort,
         force=gripper.force,
         suction=gripper.suction,

@@ -19,6 +19,7 @@ class Wanted:
         base, tip: The links between which the arm is; no base means the robot's root.
         out: The folder that is made.
         drive: One of `robot.DRIVES`.
+        turning_radius: Of a car, metres.
         fingers: Two prismatic joints of the URDF's own gripper; without them ours is bolted to
             the tip.
         opening: The gripper's largest, metres.
@@ -40,6 +41,7 @@ class Wanted:
     out: Path
     base: str | None = None
     drive: str = "omnidirectional"
+    turning_radius: float | None = None
     fingers: tuple[str, str] | None = None
     opening: float | None = None
     force: float | None = None

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 import shutil
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -84,8 +86,8 @@ def _fill(
 
 
 def mesh_name(link: str, number: int) -> str:
-    """Name the mesh file of a link's part."""
-    safe = "".join(one if one.isalnum() or one in "_-" else "_" for one in link)
+    """Name the mesh file of a link's part; no two links have the same."""
+    safe = "".join(one if one.isalnum() or one in "_-" else f".{ord(one):x}." for one in link)
     return f"{safe}_{number}.obj"
 
 
@@ -115,6 +117,7 @@ def yaml_text(robot: Robot, made_from: str, srdf: str | None = None) -> str:
         "urdf: robot.urdf",
         "base:",
         f"  drive: {robot.drive}",
+        *([] if robot.turning_radius is None else [f"  turning_radius: {robot.turning_radius!r}"]),
         f"  link: {_quoted(robot.base)}",
         f"  box: {{size: {_list(size)}, at: {_list(part.pose.position)}}}",
         f"  velocity: {_list(robot.velocity[:3])}",
@@ -192,13 +195,16 @@ def _allowed_lines(robot: Robot) -> list[str]:
             if (min(first, name), max(first, name)) in robot.allowed
         ]  # fmt: skip
         if others:
-            lines.append(f"  - {' '.join((first, *others))}")
+            line, quoted = [first, *others], [_quoted(name) for name in (first, *others)]
+            lines.append(
+                f"  - {' '.join(line)}" if line == quoted else f"  - [{', '.join(quoted)}]"
+            )
     return lines
 
 
 def urdf_text(robot: Robot, masses: Mapping[str, float]) -> str:
     """Write robot.urdf: the arm from its foot on, and the hand, of the same convex hulls."""
-    lines = ['<?xml version="1.0"?>', f'<robot name="{robot.name}">']
+    lines = ['<?xml version="1.0"?>', f"<robot name={quoteattr(robot.name)}>"]
     for link in robot.links:
         if link.name != robot.base:
             lines += _link(link.name, link.parts, masses.get(link.name, 0.0))
@@ -211,8 +217,9 @@ def urdf_text(robot: Robot, masses: Mapping[str, float]) -> str:
         lines += _joint(joint, kind, parent, low, high, robot.effort[index])
         parent = joint.child
     lines += [
-        f'  <joint name="{robot.hand}_mount" type="fixed"><parent link="{parent}"/>'
-        f'<child link="{robot.hand}"/>{_origin(robot.T_flange_hand)}</joint>'
+        f'  <joint name={quoteattr(f"{robot.hand}_mount")} type="fixed">'
+        f"<parent link={quoteattr(parent)}/><child link={quoteattr(robot.hand)}/>"
+        f"{_origin(robot.T_flange_hand)}</joint>"
     ]
     for finger in robot.fingers:
         lines += _joint(finger, "prismatic", robot.hand, 0.0, robot.opening / 2, robot.force)
@@ -225,7 +232,7 @@ def _link(name: str, parts: Sequence[Part], mass: float) -> list[str]:
     x, y, z = np.maximum(high - low, 0.02)
     a, b, c = (mass / 12 * value for value in (y * y + z * z, x * x + z * z, x * x + y * y))
     lines = [
-        f'  <link name="{name}">',
+        f"  <link name={quoteattr(name)}>",
         f'    <inertial><origin xyz="{words((low + high) / 2)}"/><mass value="{mass:.6g}"/>'
         f'<inertia ixx="{a:.6g}" ixy="0" ixz="0" iyy="{b:.6g}" iyz="0" izz="{c:.6g}"/></inertial>',
     ]
@@ -239,8 +246,9 @@ def _joint(
     joint: Joint, kind: str, parent: str, low: float, high: float, effort: float
 ) -> list[str]:
     return [
-        f'  <joint name="{joint.name}" type="{kind}"><parent link="{parent}"/>'
-        f'<child link="{joint.child}"/>{_origin(joint.origin)}<axis xyz="{words(joint.axis)}"/>'
+        f'  <joint name={quoteattr(joint.name)} type="{kind}"><parent link={quoteattr(parent)}/>'
+        f"<child link={quoteattr(joint.child)}/>{_origin(joint.origin)}"
+        f'<axis xyz="{words(joint.axis)}"/>'
         f'<limit lower="{low!r}" upper="{high!r}" effort="{effort:g}" '
         f'velocity="{joint.velocity or 1.0:g}"/></joint>'
     ]
@@ -259,4 +267,8 @@ def _pose(pose: Pose) -> str:
 
 
 def _quoted(text: str) -> str:
-    return text if text.replace("_", "a").replace("-", "a").isalnum() else repr(text)
+    """Write a text such that YAML reads just that: names as they are."""
+    plain = text.replace("_", "a").replace("-", "a").isalnum() and not text.startswith("-")
+    if plain and text.lower() != "null":
+        return text
+    return repr(text) if "\\" not in repr(text) else json.dumps(text)

@@ -15,7 +15,13 @@ from tamp.geometric.loading.robot_gripper import read_gripper, read_pose
 from tamp.geometric.loading.yaml_file import read_yaml
 from tamp.geometric.loading.yaml_nodes import YamlNode
 from tamp.geometric.robot.arms import Mobile, as_arm, joined
-from tamp.geometric.robot.robot import DRIVES, LIMIT_MARGIN_RAD, Link, Robot
+from tamp.geometric.robot.robot import (
+    DRIVES,
+    LIMIT_MARGIN_RAD,
+    TURNING_RADII_M,
+    Link,
+    Robot,
+)
 from tamp.geometric.robot.robot_arrays import damaged, numbers, read_arrays
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.pose import Pose
@@ -33,6 +39,7 @@ FULL_TURN = 2 * math.pi
 
 _TOP = ("format", "version", "urdf", "made_from", "srdf", "base", "arm", "gripper", "allowed")
 _BASE = ("drive", "link", "box", "velocity", "acceleration")
+_ANY_BASE = (*_BASE, "turning_radius")
 _ARM = ("foot", "mount", "home", "payload", "locked_joint", "joints")
 _JOINT = ("link", "kind", "origin", "range", "velocity", "acceleration", "effort")
 
@@ -56,7 +63,7 @@ def read_robot(folder: Path) -> Robot:
 def _one(root: YamlNode, folder: Path) -> Robot:
     """Read a robot of one arm."""
     top = root.mapping(_TOP, required=("format", "version", "urdf", "base", "arm", "gripper"))
-    base = top["base"].mapping(_BASE, required=_BASE)
+    base = top["base"].mapping(_ANY_BASE, required=_BASE)
     arm = top["arm"].mapping(_ARM, required=("foot", "mount", "home", "joints"))
     gripper = read_gripper(top["gripper"])
 
@@ -98,6 +105,7 @@ def _one(root: YamlNode, folder: Path) -> Robot:
         urdf=_urdf(top["urdf"], folder),
         folder=folder,
         drive=base["drive"].text(DRIVES, "drive"),
+        turning_radius=_turning_radius(base),
         locked=None if locked is None else names.index(locked),
         effort=_each(entries, "effort"),
         force=gripper.force,
@@ -108,11 +116,27 @@ def _one(root: YamlNode, folder: Path) -> Robot:
     return robot
 
 
+def _turning_radius(base: Mapping[str, YamlNode]) -> float | None:
+    """Read how tight a circle the base drives, metres: of a car, and of a car alone."""
+    drive = base["drive"].text()
+    if "turning_radius" in base:
+        if drive != "car":
+            raise base["turning_radius"].error(
+                f"a turning_radius is a car's, not of a {drive} base"
+            )
+        return base["turning_radius"].number(low=TURNING_RADII_M[0], high=TURNING_RADII_M[1])
+    if drive == "car":
+        raise base["drive"].error(
+            "a car needs a turning_radius", remedy="That of the tightest circle, metres, beside it"
+        )
+    return None
+
+
 def _several(root: YamlNode, folder: Path) -> Robot:
     """Read a robot whose arms are those of other robots' folders."""
     keys = ("format", "version", "base", "arms", "allowed")
     top = root.mapping(keys, required=("base", "arms"))
-    base = top["base"].mapping(_BASE, required=_BASE)
+    base = top["base"].mapping(_ANY_BASE, required=_BASE)
     body = Mobile(
         name=folder.name,
         base=Link(base["link"].text(), (_box(base["box"]),)),
@@ -120,6 +144,7 @@ def _several(root: YamlNode, folder: Path) -> Robot:
         acceleration=base["acceleration"].numbers(3, positive=True),
         drive=base["drive"].text(DRIVES, "drive"),
         folder=folder,
+        turning_radius=_turning_radius(base),
     )
     entries = top["arms"].mapping()
     if len(entries) < 2:
@@ -236,10 +261,10 @@ def _hulls(file: Path) -> dict[str, list[Hull]]:
 
 
 def _allowed(node: YamlNode, names: list[str]) -> frozenset[tuple[str, str]]:
-    """Read lines of names: the first of each with all others of it."""
+    """Read lines of names, or lists of names with blanks: the first of each with all others."""
     pairs: set[tuple[str, str]] = set()
     for line in node.items():
-        words = line.text().split()
+        words = [one.text() for one in line.items()] if line.is_list() else line.text().split()
         for word in words:
             if word not in names:
                 raise line.error(f"unknown link '{word}'", found=word, choices=names)

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.collision.arrangement import Arrangement
+from tamp.geometric.motion.car import drive_curves
 from tamp.geometric.motion.checker import Checker, EdgeTest
 from tamp.geometric.motion.compiled_planner import Moving, connect_compiled
 from tamp.geometric.motion.differential import RETREATS_M, YAW_COLUMNS, turn_and_drive
-from tamp.geometric.motion.path import edge_lengths, length, nearest, unwrap
+from tamp.geometric.motion.path import edge_lengths, inside, length, nearest, unwrap
 from tamp.geometric.motion.planners import COMPILED, STEERINGS
 from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.motion.shortcut import shortcut
@@ -37,8 +38,8 @@ SAMPLING_DOMAIN_M = 10.0
 
 SHORTCUT_TRIES = 30
 SHORTCUT_PATIENCE = 8
-CURVE_STEP_M = 0.05
-"""Metres between the samples of a Reeds-Shepp curve: 0.6 mm from an arc of radius 0.5 m."""
+TURNING_RADIUS_M = 0.5
+"""Of a base that may go sideways but is asked to drive like a car, metres."""
 
 MAX_PAIRS = 12
 """Most combinations of a way out of the start and a way into the goal to try."""
@@ -54,7 +55,7 @@ def plan_base(
     deadline: Deadline,
     *,
     steering: str = "se2",
-    turning_radius: float = 0.5,
+    turning_radius: float = TURNING_RADIUS_M,
     effort: int = 1,
     shortcuts: int = SHORTCUT_TRIES,
     planner: str = COMPILED,
@@ -104,7 +105,7 @@ def plan_base(
         checks += 1
         return checker.edge_free(conf(a), conf(nearest(a, b, YAW_COLUMNS)))
 
-    if not (_inside(room, start) and _inside(room, goal)):
+    if not (inside(room, start) and inside(room, goal)):
         return MotionResult(None, Failure.LIMITS, checks)
     if not checker.free(conf(start)):
         return MotionResult(None, Failure.START, checks)
@@ -138,16 +139,15 @@ def plan_base(
             tries=shortcuts,
         )  # fmt: skip
     else:
-        path = _drive(turning_radius, start, goal, room, edge_free, seed, budget, deadline)
+        path = drive_curves(
+            start, goal, room, edge_free, turning_radius=turning_radius, seed=seed, checks=budget,
+            deadline=deadline,
+        )  # fmt: skip
 
-    if path is None:
-        return MotionResult(None, Failure.TIME if deadline.passed else Failure.EXHAUSTED, checks)
-    certified = all(edge_free(a, b) for a, b in pairwise(path))
-    return (
-        MotionResult(path, None, checks)
-        if certified
-        else MotionResult(None, Failure.EXHAUSTED, checks)
-    )
+    if path is not None and all(edge_free(a, b) for a, b in pairwise(path)):
+        return MotionResult(path, None, checks)
+    late = path is None and deadline.passed
+    return MotionResult(None, Failure.TIME if late else Failure.EXHAUSTED, checks)
 
 
 def _grown(
@@ -212,67 +212,6 @@ def _retreats(base: Array, room: Room, edge_free: EdgeTest) -> Iterator[Array]:
         heading = base[2] + angle
         for distance in RETREATS_M:
             away = base + distance * np.array([np.cos(heading), np.sin(heading), 0.0])
-            if not _inside(room, away) or not edge_free(base, away):
+            if not inside(room, away) or not edge_free(base, away):
                 break
             yield away
-
-
-def _drive(
-    turning_radius: float,
-    start: Array,
-    goal: Array,
-    room: Room,
-    edge_free: EdgeTest,
-    seed: int,
-    budget: int,
-    deadline: Deadline,
-) -> Array | None:
-    """Compute Reeds-Shepp curves from start to goal, sampled."""
-    from tamp.geometric.motion.sampling_based import PlaneSpace, connect, curve
-
-    plane = PlaneSpace(room.x, room.y, turning_radius)
-
-    def sampled(a: Array, b: Array) -> Array:
-        return unwrap(curve(plane, a, b, CURVE_STEP_M), YAW_COLUMNS)
-
-    def curve_free(a: Array, b: Array) -> bool:
-        samples = sampled(a, b)
-        return all(_inside(room, base) for base in samples) and all(
-            edge_free(c, d) for c, d in pairwise(samples)
-        )
-
-    vertices: list[Array] = [start, goal]
-    if not curve_free(start, goal):
-        found, _ = connect(
-            plane,
-            start,
-            [goal],
-            curve_free,
-            seed=seed,
-            checks=budget,
-            deadline=deadline,
-            reach=2.0 * MAX_EDGE_M,
-        )
-
-        if found is None:
-            return None
-        remaining = [*found[1:-1], goal]
-        vertices = [start]
-        while remaining:  # from each vertex jump as far ahead as a free curve leads
-            jump = next(
-                (
-                    j
-                    for j in range(len(remaining) - 1, 0, -1)
-                    if curve_free(vertices[-1], remaining[j])
-                ),
-                0,
-            )
-            vertices.append(remaining[jump])
-            remaining = remaining[jump + 1 :]
-
-    pieces = [sampled(a, b) for a, b in pairwise(vertices)]
-    return unwrap(np.concatenate([pieces[0], *(piece[1:] for piece in pieces[1:])]), YAW_COLUMNS)
-
-
-def _inside(room: Room, base: Array) -> bool:
-    return bool(room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1])

@@ -12,11 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tamp.geometric.scene.pose import Array
+from tamp.geometric.scene.scene import Room
 
 if TYPE_CHECKING:
     from jaxtyping import Float
 
 FULL_TURN_RAD = 2.0 * np.pi
+
+
+def inside(room: Room, base: Float[Array, " 3"]) -> bool:
+    """Check whether the base's centre is in the room."""
+    return bool(room.x[0] <= base[0] <= room.x[1] and room.y[0] <= base[1] <= room.y[1])
 
 
 def nearest(

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +25,16 @@ from tamp.system.deadline import Deadline
 if TYPE_CHECKING:
     from jaxtyping import Float
 
+
+SHORTEST_CURVE_M = 1e-9
+"""Metres: ends nearer to each other than this are one."""
+
+KIND_STEP_M = 1e-6
+"""Metres of a curve over which it is looked at whether the car drives forwards, and where it turns;
+the places where that changes are found as exactly."""
+
+KIND_LOOKS_M = 0.02
+"""Metres of a curve between those looks: pieces that are shorter may be overlooked."""
 
 ITERATIONS_PER_CHECK = 20  # an iteration may ask for no check at all; it costs about 1 us
 
@@ -208,20 +219,49 @@ def connect(
 def curve(
     plane: PlaneSpace, start: Float[Array, " 3"], end: Float[Array, " 3"], step: float
 ) -> Float[Array, "n 3"]:
-    """Sample the shortest Reeds-Shepp curve of `plane`, at most about `step` metres apart; shape
-    (n, 3).
+    """Sample the shortest Reeds-Shepp curve of `plane`, at most `step` metres apart, where the car
+    reverses and where it steers otherwise; shape (n, 3).
 
-    The ends are exactly `start` and `end`. Where the car reverses between two samples, the tip of
-    the cusp is cut.
+    The ends are exactly `start` and `end`.
     """
-    built = plane.build()
+    built, radius = plane.build(), plane.turning_radius
     first, last, between = (_state(built, plane, conf) for conf in (start, end, start))
-    count = max(1, int(np.ceil(built.distance(first, last) / step)))
-    rows = [np.array(start, dtype=float)]
-    for i in range(1, count):
-        built.interpolate(first, last, i / count, between)
-        rows.append(np.array(plane.read(between)))
-    return np.array([*rows, np.array(end, dtype=float)])
+    length = float(built.distance(first, last))
+    if radius is None or length < SHORTEST_CURVE_M:
+        return np.array([start, end], dtype=float)
+
+    def at(share: float) -> Array:
+        built.interpolate(first, last, share, between)
+        return np.array(plane.read(between))
+
+    near = KIND_STEP_M / length
+
+    def kind(share: float) -> tuple[bool, int]:
+        """Say whether it drives forwards just there, and to which side it turns."""
+        before, after = at(max(0.0, share - near)), at(min(1.0, share + near))
+        way = after - before
+        turn = math.remainder(way[2], math.tau)
+        ahead = way[0] * math.cos(before[2] + turn / 2) + way[1] * math.sin(before[2] + turn / 2)
+        return ahead > 0.0, round(turn * radius / (2 * near * length))
+
+    changes = [0.0]
+    looks = np.linspace(2 * near, 1.0 - 2 * near, max(2, math.ceil(length / KIND_LOOKS_M) + 1))
+    kinds = [kind(share) for share in looks]
+    for (low, before), (last_look, after) in pairwise(zip(looks.tolist(), kinds, strict=True)):
+        while before != after:  # more than once where a piece is short
+            high = last_look
+            while high - low > near:
+                middle = (low + high) / 2
+                low, high = (middle, high) if kind(middle) == before else (low, middle)
+            changes.append((low + high) / 2)
+            low = min(last_look, high + 2 * near)
+            before = kind(low)
+
+    shares: list[float] = []
+    for low, high in pairwise([*changes, 1.0]):
+        pieces = max(1, math.ceil((high - low) * length / step))
+        shares += np.linspace(low, high, pieces + 1)[:-1].tolist()
+    return np.array([start, *(at(share) for share in shares[1:]), end], dtype=float)
 
 
 def _finite(conf: Array) -> bool:

@@ -35,6 +35,7 @@ class Mobile:
         base: Its link, in the frame on the floor.
         velocity, acceleration: Limits of base x, base y and base yaw, per second (squared).
         drive: How it moves, one of `robot.DRIVES`.
+        turning_radius: Of a car, metres.
         folder: The robot's.
     """
 
@@ -44,6 +45,7 @@ class Mobile:
     acceleration: tuple[float, ...]
     drive: str
     folder: Path
+    turning_radius: float | None = None
 
 
 def at_home(arm: Robot) -> Posture:
@@ -130,6 +132,7 @@ def as_arm(body: Mobile, own: Robot, name: str, mount: Pose) -> Robot:
         allowed=frozenset(among | {_pair(body.base.name, one) for one in lowest}),
         folder=body.folder,
         drive=body.drive,
+        turning_radius=body.turning_radius,
         arm=name,
         prefix=prefix,
         described=((prefix, own.folder),),

@@ -19,8 +19,7 @@ def keep_valid(origins, slides, T_flange_tool, lower, upper, target, candidates,
     """Return the candidates (k, n), turned by full turns into the limits, whose FK meets the target
     (4, 4). Shape (m, n).
 
-    The tolerance holds for the position's distance in metres and for the largest difference of a
-    rotation's entries.
+    The tolerance holds for each entry of the position, metres, and of the rotation.
     """
     n = len(origins)
     kept = np.empty((len(candidates), n))

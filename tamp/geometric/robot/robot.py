@@ -14,8 +14,12 @@ from tamp.geometric.scene.scene import Part
 LIMIT_MARGIN_RAD = math.radians(0.5)
 """Radians that plans keep from a joint's limits; of one that slides a tenth as many metres."""
 
-DRIVES = ("omnidirectional", "differential", "fixed")
-"""How a base moves: in any direction, turning on the spot and straight ahead, or not at all."""
+TURNING_RADII_M = (0.05, 20.0)
+"""Of the tightest circle of a car: the least and the most."""
+
+DRIVES = ("omnidirectional", "differential", "car", "fixed")
+"""How a base moves: in any direction, turning on the spot and straight ahead, along arcs and
+straight ahead, or not at all."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,7 @@ class Robot:
         urdf: The arm's and the hand's description.
         folder: Where the robot is kept: robot.yaml, geometry.npz and reachability.npz.
         drive: One of DRIVES.
+        turning_radius: Of a car, metres: of the tightest circle that the base's centre drives.
         locked: Index of the joint that, fixed, leaves an arm that closed-form inverse kinematics
             knows; None where there is none.
         effort: The most that each of the arm's joints exerts, newton metres or newtons.
@@ -106,6 +111,7 @@ class Robot:
     urdf: Path
     folder: Path
     drive: str = "omnidirectional"
+    turning_radius: float | None = None
     locked: int | None = None
     effort: tuple[float, ...] = field(default=())
     force: float = 50.0

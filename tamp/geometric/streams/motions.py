@@ -14,7 +14,7 @@ import numpy as np
 from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.context import Context
 from tamp.geometric.motion.arm import plan_arm
-from tamp.geometric.motion.base import plan_base
+from tamp.geometric.motion.base import TURNING_RADIUS_M, plan_base
 from tamp.geometric.motion.result import Failure, MotionResult
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.loads import body_poses, load_of, plan_loaded_pick
@@ -65,6 +65,7 @@ def plan_base_motion(context: Context, goal: BaseConf, call: Call) -> Iterator[M
         return plan_base(
             arrangement, context.home, *ends, context.scene.room, call.rng, call.deadline,
             effort=effort, steering=context.steering, planner=context.planner,
+            turning_radius=context.robot.turning_radius or TURNING_RADIUS_M,
         )  # fmt: skip
 
     stands = context.conf(start.array, context.home), context.conf(goal.array, context.home)

@@ -9,7 +9,7 @@ from enum import Enum
 
 from tamp.symbolic.search.heuristics.registry import Estimate, Heuristic
 from tamp.symbolic.search.operators import Operator
-from tamp.symbolic.search.plan_shortening import eliminate_actions
+from tamp.symbolic.search.plan_shortening import GoalPricing, eliminate_actions, free_goal
 from tamp.symbolic.search.successors import State, Successors
 from tamp.system.deadline import Deadline
 
@@ -111,13 +111,13 @@ class SearchSpace:
         self.evaluated += 1
         return tuple(heuristic(closed, parent) for heuristic in self.heuristics)
 
-    def plan(self, state: State) -> Plan:
+    def plan(self, state: State, goal_price: GoalPricing = free_goal) -> Plan:
         """Extract the plan to a state along the parents, then eliminate the actions that it does
-        not need.
+        not need; what is left costs no more with the goal's price.
         """
         numbers: list[int] = []
         while state in self.parents:
             state, operator = self.parents[state]
             numbers.append(operator)
-        numbers, cost = eliminate_actions(self.successors, numbers[::-1])
+        numbers, cost = eliminate_actions(self.successors, numbers[::-1], goal_price)
         return Plan(tuple(self.successors.operators[number] for number in numbers), cost)

@@ -16,20 +16,22 @@ def lazy(search: SearchSpace, weight: float) -> Plan | None:
 
     Until then its parent's estimate stands for it. `weight` infinite is greedy search: costs do not
     count. A goal state whose goal rests on priced facts waits until nothing that is cheaper than it
-    is left in an open list.
+    is left in an open list; one whose goal rests on facts of infinite price is none.
     """
     run = _LazySearch(search, weight)
     while (entry := run.open.pop()) is not None:
         _, order, cost, state, parent, operator = entry
         if run.is_goal(state, operator):
-            return search.plan(state)
+            return search.plan(state, run.goal_price)
         if run.is_closed(state, cost):
             continue
 
         closed = run.close(state, cost, parent, operator)
-        if search.successors.holds_goal(closed):
-            if run.take_goal(state, cost):
-                return search.plan(state)
+        price = run.goal_price(state) if search.successors.holds_goal(closed) else math.inf
+        if price == 0.0:
+            return search.plan(state, run.goal_price)
+        if price < math.inf:
+            run.keep_goal(state, cost, price)
             continue
 
         node = run.evaluate(state, closed, cost, parent)
@@ -47,7 +49,7 @@ class _LazySearch:
         self._successors = s = search.successors
         self._greedy = weight == math.inf
         self.open = OpenLists(s.initial, len(search.heuristics), weight)
-        self._goal_price = GoalPrice(s)
+        self.goal_price = GoalPrice(s)
         self._goal: State | None = None
         self._goal_cost = math.inf
         self._closed: dict[State, float] = {}
@@ -74,15 +76,11 @@ class _LazySearch:
             self._spent[state] = spent
         return self._successors.closure(state)
 
-    def take_goal(self, state: State, cost: float) -> bool:
-        """Take a goal state at once where its goal is free; else have it wait for a cheaper one."""
-        price = self._goal_price(state)
-        if price == 0.0:
-            return True
+    def keep_goal(self, state: State, cost: float, price: float) -> None:
+        """Have a goal state whose goal costs something wait for a cheaper one."""
         if cost + price < self._goal_cost:
             self._goal, self._goal_cost = state, cost + price
             self.open.push_goal(state, self._goal_cost, price)
-        return False
 
     def evaluate(self, state: State, closed: State, cost: float, parent: State | None) -> Expanded:
         """Evaluate a state, once."""

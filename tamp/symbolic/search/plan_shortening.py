@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from tamp.symbolic.search.successors import State, Successors
 
+GoalPricing = Callable[[State], float]
+"""What the goal's derivation costs in a state without derived facts, in which the goal holds."""
 
-def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list[int], float]:
+
+def free_goal(state: State) -> float:
+    """Price the goal at nothing: whatever it is derived from."""
+    return 0.0
+
+
+def eliminate_actions(
+    successors: Successors, plan: Sequence[int], goal_price: GoalPricing = free_goal
+) -> tuple[list[int], float]:
     """Drop operators as long as the rest is a plan that costs no more (action elimination, Nakhost
     and Mueller 2010).
 
@@ -17,17 +27,19 @@ def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list
     Args:
         successors: The task.
         plan: Numbers of operators that lead from the initial state to the goal.
+        goal_price: Counts beside the operators: without an action whose effect the goal rests on
+            it may still hold, by a dearer derivation.
 
     Returns:
-        The remaining operators and their cost with prices.
+        The remaining operators and their cost with prices, without the goal's.
     """
     s = successors
     remaining = list(plan)
-    left = _run(s, s.initial, remaining)[1]
+    left = _run(s, s.initial, remaining, goal_price)[1]
     kept: list[int] = []
     state, cost = s.initial, 0.0
     while remaining:
-        shorter, reduced = _run(s, state, remaining[1:])
+        shorter, reduced = _run(s, state, remaining[1:], goal_price)
         if shorter is not None and reduced <= left + 1e-9:
             remaining, left = shorter, reduced
             continue
@@ -38,9 +50,11 @@ def eliminate_actions(successors: Successors, plan: Sequence[int]) -> tuple[list
     return kept, cost
 
 
-def _run(s: Successors, state: State, plan: list[int]) -> tuple[list[int] | None, float]:
-    """Apply a plan's operators, leaving out those that do not apply; return them and their cost,
-    None without the goal.
+def _run(
+    s: Successors, state: State, plan: list[int], goal_price: GoalPricing
+) -> tuple[list[int] | None, float]:
+    """Apply a plan's operators, leaving out those that do not apply; return them and what they and
+    the goal cost, None without the goal.
     """
     cost = 0.0
     remaining: list[int] = []
@@ -52,4 +66,4 @@ def _run(s: Successors, state: State, plan: list[int]) -> tuple[list[int] | None
             remaining.append(operator)
     if cost == math.inf or not s.holds_goal(s.closure(state)):
         return None, math.inf
-    return remaining, cost
+    return remaining, cost + goal_price(state)

@@ -54,5 +54,6 @@ def formula_words(formula: Formula, binding: Binding) -> str:
             return f"({' '.join((head, *(formula_words(part, binding) for part in parts)))})"
         case Exists(parameters, body) | Forall(parameters, body):
             head = "exists" if isinstance(formula, Exists) else "forall"
-            names = " ".join(parameter.name for parameter in parameters)
-            return f"({head} ({names}) {formula_words(body, binding)})"
+            names = [parameter.name for parameter in parameters]
+            free = {name: word for name, word in binding.items() if name not in names}
+            return f"({head} ({' '.join(names)}) {formula_words(body, free)})"

@@ -42,6 +42,12 @@ def driving(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="session")
+def steered(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """An arm of six joints on a car."""
+    return made(tmp_path_factory.mktemp("steered"), "--base", "car", "--turning-radius", "0.7")
+
+
+@pytest.fixture(scope="session")
 def lifting(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An arm of seven joints, the first of which is a lift, on an omnidirectional base."""
     return made(tmp_path_factory.mktemp("lifting"), joints=(LIFT, *SIX), name="lifter")

@@ -83,6 +83,11 @@ CASES = {
     "stands": (arm_text(), (*ARM, "--stands", "x"), r"--stands x: JOINT=VALUE"),
     "stands-unknown": (arm_text(), (*ARM, "--stands", "x=1"), r"unknown joint 'x'"),
     "drive": (arm_text(), (*ARM, "--base", "flying"), r"unknown drive 'flying'.*omnidirectional"),
+    "car-radius": (arm_text(), (*ARM, "--base", "car"), r"--base car needs --turning-radius"),
+    "no-car": (arm_text(), (*ARM, "--turning-radius", "1"), r"--turning-radius is of --base car alone"),
+    "radius-range": (
+        arm_text(), (*ARM, "--base", "car", "--turning-radius", "50"), r"--turning-radius 50.*from 0.05 to 20",
+    ),
     "two-roots": (arm_text(extra='<link name="alone"/>'), ARM, r"several roots: foot, alone"),
 }  # fmt: skip
 
@@ -151,6 +156,15 @@ DAMAGED = {
     "version": (yaml("version: 1", "version: 7"), r"robot.yaml:3: version: version 7 .*only 1.*Make it again"),
     "format": (yaml("format: tamp-robot", "format: other"), r"not a robot"),
     "drive": (yaml("drive: differential", "drive: hover"), r"unknown drive 'hover'"),
+    "car": (yaml("drive: differential", "drive: car"), r"robot.yaml:\d+: .*a car needs a turning_radius"),
+    "no-car": (
+        yaml("drive: differential", "drive: differential\n  turning_radius: 1.0"),
+        r"robot.yaml:\d+: .*a turning_radius is a car's, not of a differential base",
+    ),
+    "car-radius": (
+        yaml("drive: differential", "drive: car\n  turning_radius: 99.0"),
+        r"turning_radius: must be at most 20, found 99",
+    ),
     "home": (yaml("home: [", "home: [99, "), r"home: expected 6 numbers, found 7"),
     "key": (yaml("  foot:", "  feet:"), r"unknown key 'feet'. Choices: foot, mount"),
     "pair": (yaml("allowed:\n  - base", "allowed:\n  - bass"), r"unknown link 'bass'"),

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
+import shutil
 from pathlib import Path
 
 import pytest
 
 import tamp
+from tamp.errors import InputError
 from tamp.execution.execute import ExecutionOptions, execute
 from tamp.plan.open import open_plan
 from tamp.verification.verify import verify
@@ -24,7 +27,7 @@ goal: (on can shelf)
 """
 
 
-@pytest.mark.parametrize("name", ["driving", "lifting", "five"])
+@pytest.mark.parametrize("name", ["driving", "steered", "lifting", "five"])
 def test_a_robot_of_ones_own_solves_a_shipped_problem(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
@@ -38,6 +41,30 @@ def test_a_robot_of_ones_own_solves_a_shipped_problem(
     assert report.holds, report.text()
     assert any("given beside the problem" in note for note in report.notes)
     assert execute(open_plan(plan), ExecutionOptions(grasp="constraint")).reached
+
+
+def test_what_a_base_cannot_drive_is_neither_planned_nor_judged_good(
+    steered: Path, driving: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"cannot move by 'se2'.*Choices: reeds-shepp"):
+        tamp.load_problem("one_object", robot=steered, steering="se2")
+    with pytest.raises(InputError, match=r"cannot move by 'se2'.*differential, reeds-shepp"):
+        tamp.load_problem("one_object", robot=driving, steering="se2")
+
+    # The same robot, but for what its base can do: its plan turns on the spot.
+    car, plan = tmp_path / "boxes", tmp_path / "plan.json"
+    shutil.copytree(driving, car)
+    solution = tamp.solve(tamp.load_problem("one_object", robot=car), max_time=60.0, seed=0)
+    tamp.write_plan(solution, plan)
+    assert verify(plan).holds
+    told = (car / "robot.yaml").read_text(encoding="utf-8")
+    as_car = told.replace("drive: differential", "drive: car\n  turning_radius: 0.7")
+    (car / "robot.yaml").write_text(as_car, encoding="utf-8")
+    old, new = (hashlib.sha256(text.encode()).hexdigest() for text in (told, as_car))
+    forged = plan.read_text(encoding="utf-8").replace(old, new)
+    plan.write_text(forged, encoding="utf-8")
+    report = verify(plan)
+    assert not report.holds and "it is a car" in report.text()
 
 
 def test_a_bolted_arm_never_moves_its_base(bolted: Path, tmp_path: Path) -> None:

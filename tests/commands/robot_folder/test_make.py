@@ -16,7 +16,7 @@ from tamp.geometric.robot.spheres import link_covers
 from tamp.geometric.scene.scene import Hull
 
 
-@pytest.fixture(params=["driving", "lifting", "bolted"])
+@pytest.fixture(params=["driving", "steered", "lifting", "bolted"])
 def folder(request: pytest.FixtureRequest) -> Path:
     return request.getfixturevalue(request.param)
 

@@ -19,7 +19,7 @@ from tamp.stream import Call, Rejection, RejectionKind
 from tamp.system.deadline import Deadline
 
 HOME = np.zeros(7)
-ROBOT = SimpleNamespace(opening=0.08)
+ROBOT = SimpleNamespace(turning_radius=None, opening=0.08)
 GRASP = Grasp("mug", Pose((0.0, 0.0, 0.1)), 0.03)
 HERE, THERE = Pose((1.0, 0.0, 0.5)), Pose((2.0, 0.0, 0.5))
 REACH = Reach(np.full((2, 7), 0.5), np.array([np.full(7, 0.5), np.full(7, 0.4)]))

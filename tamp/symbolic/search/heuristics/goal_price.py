@@ -25,8 +25,16 @@ class GoalPrice:
                     ([s.number[fact] for fact in axiom.positive], s.number[axiom.head], price)
                 )
 
+    @property
+    def is_free(self) -> bool:
+        """Check that no derivation costs anything."""
+        return not self._axioms
+
     def __call__(self, state: State) -> float:
-        """Price the goal in a state without its derived facts, in which the goal holds."""
+        """Price the goal in a state without its derived facts, in which the goal holds.
+
+        Infinite where all its derivations rest on a fact that is.
+        """
         if not self._axioms:
             return 0.0
         costs = dict.fromkeys(bits(state), 0.0)
@@ -39,4 +47,4 @@ class GoalPrice:
                     if cost < costs.get(head, math.inf):
                         costs[head] = cost
                         changed = True
-        return sum(costs.get(fact, 0.0) for fact in self._goal)
+        return sum(costs.get(fact, math.inf) for fact in self._goal)

@@ -16,6 +16,7 @@ from random import Random
 
 from tamp.symbolic.search.expansion import Plan, SearchSpace
 from tamp.symbolic.search.goal_agenda import goal_agenda
+from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.packed.search import PackedSearch, Stalled
 from tamp.symbolic.search.plan_shortening import eliminate_actions
 from tamp.symbolic.search.successors import State
@@ -127,5 +128,5 @@ def by_agenda(search: SearchSpace, way: Way, random: int, states: int) -> Plan:
             state = s.apply(number, state, s.closure(state))
             steps.append(number)
 
-    kept, cost = eliminate_actions(s, steps)
+    kept, cost = eliminate_actions(s, steps, GoalPrice(s))
     return Plan(tuple(s.operators[number] for number in kept), cost)

@@ -18,6 +18,7 @@ from tamp.symbolic.search.heuristics.relaxation import Relaxation
 from tamp.symbolic.search.open_lists import PREFERRED_BOOST
 from tamp.symbolic.search.packed import basics, loops
 from tamp.symbolic.search.packed.packing import pack_relaxation, pack_task
+from tamp.symbolic.search.plan_shortening import eliminate_actions
 from tamp.symbolic.search.successors import State, Successors
 
 KINDS = {"ff": 0, "landmarks": 1}
@@ -34,7 +35,11 @@ FIRST_NODES, FIRST_ENTRIES = 2_000, 40_000
 
 
 def fits(names: Sequence[str], successors: Successors) -> bool:
-    """Check that the compiled loop knows the heuristics, and has all guards at hand."""
+    """Check that the compiled loop knows the heuristics, and has all guards at hand; that no goal
+    state is none because its derivation is forbidden.
+    """
+    if math.inf in successors.axiom_cost:
+        return False
     return all(name in KINDS for name in names) and successors.lists_guards
 
 
@@ -237,6 +242,11 @@ class PackedSearch:
             numbers.append(int(ints[space.operator + node]))
             node = int(ints[space.parent + node])
 
+        operators = self._s.operators
+        if not self._goal_price.is_free:  # what the goal costs is known to Python only
+            kept, cost = eliminate_actions(self._s, numbers[::-1], self._goal_price)
+            return Plan(tuple(operators[i] for i in kept), cost)
+
         # the open lists are needed no longer: there is room in them
         plan, kept = space.ties, space.items
         ints[plan : plan + len(numbers)] = numbers[::-1]
@@ -244,6 +254,5 @@ class PackedSearch:
         count, cost = self._compiled.ELIMINATE(
             ints, self._reals, t, x, x.rooms, plan, kept, len(numbers)
         )
-        operators = self._s.operators
         steps: list[int] = ints[kept : kept + count].tolist()
         return Plan(tuple(operators[i] for i in steps), float(cost))
