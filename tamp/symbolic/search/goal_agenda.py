@@ -10,6 +10,7 @@ dead end, never to a plan that is none.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from random import Random
 
 from tamp.symbolic.search.mutex import Mutexes, MutexUndecided
 from tamp.symbolic.search.successors import State, Successors, bits
@@ -61,6 +62,24 @@ def levels(earlier: Mapping[int, set[int]]) -> list[State]:
         ready = {goal for goal, before in earlier.items() if before <= reached}
         reached = ready if ready - reached else set(earlier)
         found.append(sum(1 << goal for goal in reached))
+    return found
+
+
+def one_by_one(agenda: Sequence[State], rng: Random) -> list[State]:
+    """Return sets that grow by one goal each, in a random order within each level.
+
+    Args:
+        agenda: The levels.
+        rng: Decides.
+    """
+    found: list[State] = []
+    reached = 0
+    for level in agenda:
+        new = list(bits(level & ~reached))
+        rng.shuffle(new)
+        for goal in new:
+            reached |= 1 << goal
+            found.append(reached)
     return found
 
 

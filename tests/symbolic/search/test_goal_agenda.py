@@ -95,6 +95,13 @@ def test_goals_in_a_cycle_come_together_at_the_end() -> None:
     assert levels(earlier) == [0b00001, 0b01001, 0b11111]
 
 
+def test_one_by_one_keeps_the_levels() -> None:
+    orders = {tuple(module.one_by_one([0b0011, 0b1111], Random(seed))) for seed in range(40)}
+    assert orders == {
+        (first, 0b0011, 0b0011 | third, 0b1111) for first in (1, 2) for third in (4, 8)
+    }
+
+
 def reachable(s: Successors, most: int) -> set[State] | None:
     """All states with their derived facts; None where they are more."""
     found, waiting = {s.initial}, [s.initial]
@@ -127,14 +134,15 @@ def test_facts_that_hold_together_do_not_exclude_each_other() -> None:
     assert excluded > 100
 
 
-def test_a_plan_by_the_agenda_holds_by_the_book() -> None:
+@pytest.mark.parametrize("singly", [False, True])
+def test_a_plan_by_the_agenda_holds_by_the_book(singly: bool) -> None:
     domain, problem = GENERATORS["depot"](8, Random(1))
     task = parse_task(problem, parse_domain(domain))
     s = Successors(instantiate(task), {})
     agenda = tuple(goal_agenda(s))
     assert len(agenda) > 2
     run = SearchSpace(s, [], None, None)
-    plan = by_agenda(run, Way(("ff", "landmarks"), agenda=agenda), 1, 3000)
+    plan = by_agenda(run, Way(("ff", "landmarks"), agenda=agenda, singly=singly), 1, 3000)
     steps = [(operator.name, operator.arguments) for operator in plan.operators]
     assert Interpreter(task).run(steps) == plan.cost
     assert run.first == 0.0  # what is estimated is a part of the way

@@ -15,7 +15,7 @@ from itertools import count
 from random import Random
 
 from tamp.symbolic.search.expansion import Plan, SearchSpace
-from tamp.symbolic.search.goal_agenda import goal_agenda
+from tamp.symbolic.search.goal_agenda import goal_agenda, one_by_one
 from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.packed.search import PackedSearch, Stalled
 from tamp.symbolic.search.plan_shortening import eliminate_actions
@@ -43,16 +43,20 @@ class Way:
         heuristics: Their names.
         achievers: Whether operators that reach a landmark are preferred.
         agenda: The parts of the goal, each with all before it; empty for the goal at once.
+        singly: Whether the goals of a part are planned for one after the other, in random order.
     """
 
     heuristics: tuple[str, ...]
     achievers: bool = False
     agenda: tuple[State, ...] = ()
+    singly: bool = False
 
 
 def ways(names: Sequence[str], agenda: Sequence[State] = ()) -> list[Way]:
     """List what restarts take in turn: goals by their order first, where they have one."""
-    found = [Way(tuple(names), agenda=tuple(agenda))] if len(agenda) > 1 else []
+    found: list[Way] = []
+    if len(agenda) > 1:
+        found += [Way(tuple(names), agenda=tuple(agenda), singly=some) for some in (False, True)]
     found.append(Way(tuple(names)))
     if "landmarks" in names:
         found.append(Way(tuple(names), achievers=True))
@@ -115,7 +119,8 @@ def by_agenda(search: SearchSpace, way: Way, random: int, states: int) -> Plan:
     s = search.successors
     numbers = {id(operator): number for number, operator in enumerate(s.operators)}
     state, steps = s.initial, list[int]()
-    for goal in way.agenda:
+    parts = one_by_one(way.agenda, Random(random)) if way.singly else way.agenda
+    for goal in parts:
         part = copy(s)
         part.initial, part.goal = state, goal
         if goal != s.goal:

@@ -92,16 +92,17 @@ def test_a_single_heuristic_has_fewer_ways(names: tuple[str, ...], ways: list[Wa
 
 def test_goals_by_their_order_come_first_where_they_have_one() -> None:
     names = ("ff", "landmarks")
-    first, *others = restarts.ways(names, [1, 7])
+    first, second, *others = restarts.ways(names, [1, 7])
     assert first == Way(names, agenda=(1, 7))
+    assert second == Way(names, agenda=(1, 7), singly=True)
     assert others == restarts.ways(names) and len(others) == 3
 
 
 def test_a_stalled_agenda_gives_way_to_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    taken: list[tuple[int, ...]] = []
+    taken: list[tuple[tuple[int, ...], bool]] = []
 
     def by_agenda(search: Any, way: Way, random: int, states: int) -> Plan:
-        taken.append(way.agenda)
+        taken.append((way.agenda, way.singly))
         raise Stalled
 
     Scripted.asked, Scripted.made, Scripted.found_at = [], 0, 4
@@ -111,4 +112,4 @@ def test_a_stalled_agenda_gives_way_to_the_others(monkeypatch: pytest.MonkeyPatc
     search = SimpleNamespace(successors=None, deadline=None)
     assert restarts.greedy_with_restarts(search, ("ff",)) is PLAN  # type: ignore[arg-type]
     assert [number for number, *_ in Scripted.asked] == [1, 2, 1, 3]
-    assert taken == [(1, 3), (1, 3)]
+    assert taken == [((1, 3), False), ((1, 3), True)] * 2
