@@ -7,7 +7,7 @@ delete, so it only ever proves too little.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
 
@@ -112,6 +112,21 @@ class Mutexes:
             if not self._hold_together([possible[k] for k in others]):
                 kept = others
         return tuple(self._parts[k].literal for k in kept)
+
+    def exclusive(self, facts: Sequence[Fact], wanted: int) -> list[int]:
+        """Return for each wanted fact a mask of those that never hold together with it.
+
+        Args:
+            facts: Bit i of a mask is fact i; of one that the task does not know nothing is known.
+            wanted: A mask.
+        """
+        numbers = [self._number.get((fact, True), -1) for fact in facts]
+        found: list[int] = []
+        for own in (number for i, number in enumerate(numbers) if wanted >> i & 1):
+            together = self._with[own] if own >= 0 else -1
+            apart = [other >= 0 and not together >> other & 1 for other in numbers]
+            found.append(sum(1 << i for i, never in enumerate(apart) if never))
+        return found
 
     def _possible(self, part: GoalPart) -> list[tuple[int, ...]]:
         return [way for way in map(self._numbers, part.ways) if self._consistent(way)]

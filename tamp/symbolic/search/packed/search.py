@@ -66,6 +66,8 @@ class PackedSearch:
         random: Shuffles operators that look alike; 0 keeps to their order. The older of equal
             states then comes first, the younger otherwise.
         achievers: Whether operators that reach a landmark for the first time are preferred too.
+        successors: Another beginning and another goal with the same operators; by default the
+            search's own.
     """
 
     def __init__(
@@ -75,12 +77,15 @@ class PackedSearch:
         weight: float,
         random: int = 0,
         achievers: bool = False,
+        successors: Successors | None = None,
     ) -> None:
         from tamp.symbolic.search.packed import compiled
 
         self._compiled = compiled
         self._search, self._weight = search, weight
-        s, kinds = search.successors, len(names)
+        self._is_whole = successors is None
+        self._s = s = search.successors if successors is None else successors
+        kinds = len(names)
         relaxation = Relaxation(s, steps=True)
         marks = Landmarks(s, relaxation) if "landmarks" in names else None
         self._possible = marks is None or marks.possible
@@ -134,8 +139,8 @@ class PackedSearch:
         """
         search = self._search
         if not self._possible:
-            search.evaluated, search.first = 1, math.inf
-            s = search.successors
+            search.evaluated, search.first = 1, math.inf if self._is_whole else search.first
+            s = self._s
             return Plan((), 0.0) if s.holds_goal(s.closure(s.initial)) else None
         began = self.expanded
         while True:
@@ -165,7 +170,7 @@ class PackedSearch:
     def _count(self) -> None:
         """Add to the counts of all searches what this one has done since."""
         expanded, evaluated = self.expanded, int(self._ints[basics.EVALUATED])
-        if self._seen[1] == 0 and evaluated > 0:
+        if self._is_whole and self._seen[1] == 0 and evaluated > 0:
             self._search.first = float(self._reals[self._space.values])
         self._search.expanded += expanded - self._seen[0]
         self._search.evaluated += evaluated - self._seen[1]
@@ -187,7 +192,7 @@ class PackedSearch:
 
     def _grow(self) -> None:
         """Double the room for all that has filled half of its own."""
-        n, operators = self._ints, 2 + len(self._search.successors.operators)
+        n, operators = self._ints, 2 + len(self._s.operators)
         kinds = self._t.heuristics
         needs = (
             int(n[basics.NODES]) + 1,
@@ -237,9 +242,9 @@ class PackedSearch:
             numbers.append(int(ints[space.operator + node]))
             node = int(ints[space.parent + node])
 
-        operators = self._search.successors.operators
+        operators = self._s.operators
         if not self._goal_price.is_free:  # what the goal costs is known to Python only
-            kept, cost = eliminate_actions(self._search.successors, numbers[::-1], self._goal_price)
+            kept, cost = eliminate_actions(self._s, numbers[::-1], self._goal_price)
             return Plan(tuple(operators[i] for i in kept), cost)
 
         # the open lists are needed no longer: there is room in them

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 from typing import Any, ClassVar
 
 import pytest
 
 from tamp.symbolic.search.expansion import Plan
 from tamp.symbolic.search.packed import restarts
+from tamp.symbolic.search.packed.restarts import Way
 from tamp.symbolic.search.packed.search import Stalled
 
 PLAN = Plan((), 1.0)
@@ -40,7 +42,9 @@ def asked(
 ) -> list[tuple[int, tuple[str, ...], bool, int, int]]:
     Scripted.asked, Scripted.made, Scripted.found_at = [], 0, found_at
     monkeypatch.setattr(restarts, "PackedSearch", Scripted)
-    assert restarts.greedy_with_restarts(None, names, seed) is PLAN  # type: ignore[arg-type]
+    monkeypatch.setattr(restarts, "goal_agenda", lambda s, deadline: [1])
+    search = SimpleNamespace(successors=None, deadline=None)
+    assert restarts.greedy_with_restarts(search, names, seed) is PLAN  # type: ignore[arg-type]
     return Scripted.asked
 
 
@@ -78,11 +82,34 @@ def test_the_seed_decides_the_orders(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("names", "ways"),
     [
-        (("ff",), [(("ff",), False)]),
-        (("landmarks",), [(("landmarks",), False), (("landmarks",), True)]),
+        (("ff",), [Way(("ff",))]),
+        (("landmarks",), [Way(("landmarks",)), Way(("landmarks",), achievers=True)]),
     ],
 )
-def test_a_single_heuristic_has_fewer_ways(
-    names: tuple[str, ...], ways: list[tuple[tuple[str, ...], bool]]
-) -> None:
-    assert restarts.ways(names) == ways
+def test_a_single_heuristic_has_fewer_ways(names: tuple[str, ...], ways: list[Way]) -> None:
+    assert restarts.ways(names) == restarts.ways(names, [7]) == ways
+
+
+def test_goals_by_their_order_come_first_where_they_have_one() -> None:
+    names = ("ff", "landmarks")
+    first, second, *others = restarts.ways(names, [1, 7])
+    assert first == Way(names, agenda=(1, 7))
+    assert second == Way(names, agenda=(1, 7), singly=True)
+    assert others == restarts.ways(names) and len(others) == 3
+
+
+def test_a_stalled_agenda_gives_way_to_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[tuple[tuple[int, ...], bool]] = []
+
+    def by_agenda(search: Any, way: Way, random: int, states: int) -> Plan:
+        taken.append((way.agenda, way.singly))
+        raise Stalled
+
+    Scripted.asked, Scripted.made, Scripted.found_at = [], 0, 4
+    monkeypatch.setattr(restarts, "PackedSearch", Scripted)
+    monkeypatch.setattr(restarts, "by_agenda", by_agenda)
+    monkeypatch.setattr(restarts, "goal_agenda", lambda s, deadline: [1, 3])
+    search = SimpleNamespace(successors=None, deadline=None)
+    assert restarts.greedy_with_restarts(search, ("ff",)) is PLAN  # type: ignore[arg-type]
+    assert [number for number, *_ in Scripted.asked] == [1, 2, 1, 3]
+    assert taken == [((1, 3), False), ((1, 3), True)] * 2
