@@ -76,7 +76,8 @@ def new(x: float, y: float, z: float = TOP, side: float = 0.04) -> Body:
     [
         (-0.3, 0.0, TOP, True), (0.0, 0.0, TOP, False), (0.3 - 0.07 - 0.003, 0.0, TOP, False),
         (0.3 - 0.07 - 0.007, 0.0, TOP, True), (0.3, 0.0, TOP + SIDE + CONTACT_GAP, True),
-        (-0.3, 0.0, TOP + 0.05, False), (-0.3, 0.0, TOP - 0.01, False), (3.0, 3.0, 0.0, True),
+        (-0.3, 0.0, TOP + 0.05, False), (-0.3, 0.0, TOP - 0.01, False),
+        (-0.3, 0.0, TOP - CONTACT_GAP - 5e-4, False), (3.0, 3.0, 0.0, True),
         (-0.525, 0.0, TOP, False),
     ],
 )  # fmt: skip
@@ -85,6 +86,17 @@ def test_a_new_body_is_free_where_it_stands_on_anything_apart_from_the_rest(
 ) -> None:
     """On the table, on another cube, on the floor; not in the air, in the table or over its edge."""
     assert space.free(new(x, y, z)) is free
+
+
+def test_a_body_across_two_tables_belongs_on_both() -> None:
+    """On one of them alone it would stand as well, but not on the same as before."""
+    made = world()
+    cube = body("Cup", CUBE, (9.0, 9.0, 9.0))
+    made.scene = scene(table(), table("other", (1.0, 0.0)), cube, half=5.0)
+    made.pose = lambda name: on_table(0.5, 0.0)
+    with FreeSpace(made) as found:
+        for x, fits in ((0.5, True), (0.52, True), (0.3, False), (0.7, False)):
+            assert found.fits("Cup", on_table(x, 0.1)) is fits
 
 
 def test_what_the_robot_touches_or_holds_is_not_left_alone() -> None:

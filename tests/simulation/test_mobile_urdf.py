@@ -16,6 +16,7 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.states import arm_of
+from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Part
 from tamp.simulation.mobile_urdf import BASE_JOINTS, BASE_MASS, ROOT_LINK, mobile_urdf
 
@@ -37,9 +38,14 @@ def frames(model, values: dict[str, float]) -> dict[str, np.ndarray]:
     return {frame.name: data.oMf[i].homogeneous for i, frame in enumerate(model.frames)}
 
 
-@pytest.mark.parametrize("name", ["ur5", "panda_mobile"])
+MOUNT = Pose.from_xyz_rpy((0.1, -0.2, 0.5), (0.3, -0.4, 1.2))
+
+
+@pytest.mark.parametrize("name", ["ur5", "panda_mobile", "aslant"])
 def test_every_link_is_where_the_kinematics_have_it(name: str) -> None:
-    robot = ROBOTS[name]()
+    """Also of an arm that is mounted aslant."""
+    robot = ROBOTS["ur5" if name == "aslant" else name]()
+    robot = dataclasses.replace(robot, T_base_arm=MOUNT) if name == "aslant" else robot
     arm = np.random.default_rng(0).uniform(robot.lower, robot.upper)
     base, opening = [0.7, -0.4, 2.5], robot.opening / 2
     values = dict(zip(BASE_JOINTS, base, strict=True))

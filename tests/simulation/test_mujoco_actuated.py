@@ -23,7 +23,9 @@ CUBE = Box((0.05, 0.04, 0.06))
 
 
 def place() -> Scene:
-    made = scene(body("cube", CUBE, (2.0, 2.0, 0.5)), body("far", CUBE, (-2.0, 2.0, 0.03)))
+    made = scene(
+        body("cube", CUBE, (2.0, 2.0, 0.5), friction=0.9), body("far", CUBE, (-2.0, 2.0, 0.03))
+    )
     return replace(made, robot=RobotStart("ur5", (0.1, -0.2, 0.3)))
 
 
@@ -120,10 +122,16 @@ def test_whether_robot_and_body_feel_each_other_is_in_their_masks(world: MujocoM
     for passes, mask in ((True, PASSED), (False, FELT), (True, PASSED)):
         world.disable_collision("cube", passes)
         assert (masks(geoms), masks(others)) == ({mask}, {FELT})
+        assert len(model.pair_geom1) > 0
         pairs = np.isin(model.pair_geom1, geoms) | np.isin(model.pair_geom2, geoms)
         links = world._is_link[model.pair_geom1] | world._is_link[model.pair_geom2]
         assert np.all(model.pair_margin[pairs & links] == (-1.0 if passes else 0.0))
         assert np.all(model.pair_margin[~(pairs & links)] == 0.0)
+        assert (pairs & links).any()
+
+    world.reset_scene(place())  # made anew, it is passed through as before
+    model = world._model
+    assert masks(list(world._geoms[world._numbers["cube"]])) == {PASSED}
 
 
 def test_bodies_come_and_go_and_all_else_goes_on_as_it_was(world: MujocoMotors) -> None:

@@ -45,6 +45,7 @@ def test_obstacles_within_reach_are_told_with_their_distance() -> None:
     assert near(drops, 0.415, 1.536, reach=0.005) == pytest.approx(
         {1: math.hypot(0.035, 0.036) - 0.05}, abs=1e-5
     )
+    assert near(drops, 0.41, 1.54, reach=0.005) == {}  # 6.6 mm across the corner
 
 
 def test_the_floor_is_told_by_the_lowest_point(drops: MujocoDrops) -> None:

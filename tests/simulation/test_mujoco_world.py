@@ -75,6 +75,18 @@ def test_the_nearest_of_all_parts_counts() -> None:
         assert made.body_distance("a", "wedge", 0.02) == pytest.approx(distance, abs=1e-4)
 
 
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_nearest_counts_whichever_part_it_is(order: int) -> None:
+    parts = (Part(Sphere(0.1)), Part(Sphere(0.1), Pose((0.0, 0.41, 0.0))))[::order]
+    two = Body("two", parts, Pose((0.205, 0.0, 1.0)), movable=True)
+    made = world(
+        Body("bar", (Part(Box((0.2, 2.0, 0.2))),), Pose((0.0, 0.0, 1.0)), False), two, dynamic=True
+    )
+    two_at = Pose.from_xyz_yaw(0.205, 0.0, 1.0, -0.02)  # the second is 8 mm farther away
+    made.place("two", two_at.matrix)
+    assert made.body_distance("bar", "two", 0.02) == pytest.approx(0.005, abs=1e-4)
+
+
 def test_each_solid_has_the_box_around_it_in_its_bodys_frame() -> None:
     """A fixed body has one for each part, one that can move in a world with physics a single one."""
     made = world(WEDGE)
@@ -85,6 +97,13 @@ def test_each_solid_has_the_box_around_it_in_its_bodys_frame() -> None:
     assert (second.centre, second.half) == (
         pytest.approx([0.0, 0.0, 0.5], abs=1e-6), pytest.approx([0.05, 0.05, 0.1], abs=1e-6),
     )  # fmt: skip
+    corners = np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.05, 0.0], [0.0, 0.0, 0.3]])
+    slanted = Body("slanted", (Part(hull(corners)),), Pose(), movable=False)
+    (own,) = world(slanted).solids["slanted"]
+    assert (own.centre, own.half) == (pytest.approx([0.05, 0.025, 0.15], abs=1e-6),) * 2
+    aside = Part(WEDGE.parts[0].shape, Pose.from_xyz_yaw(0.0, 0.0, 0.0, math.pi / 2))
+    (turned,) = world(Body("aside", (aside,), Pose(), movable=False)).solids["aside"]
+    assert turned.centre == pytest.approx([0.0, 0.3, 0.0], abs=1e-6)
     free = Body("wedge", WEDGE.parts, TURNED, movable=True)
     (whole,) = world(free, dynamic=True).solids["wedge"]
     assert whole.centre == pytest.approx([0.175, 0.0, 0.2], abs=1e-6)

@@ -103,6 +103,9 @@ def test_a_mesh_is_written_once_where_mujoco_has_it(tmp_path: Path) -> None:
         corners = corners + np.array([x, 0.0, 0.0])
         near = np.linalg.norm(solid.vertices[:, None] - corners[None], axis=2)
         assert near.min(axis=0).max() < 1e-6 and near.min(axis=1).max() < 1e-6
+        a, b, c = (solid.vertices[solid.faces[:, k]] for k in range(3))
+        volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+        assert volume == pytest.approx(0.1 * 0.05 * 0.3 / 6)
 
 
 def test_an_ellipsoid_is_a_mesh_of_about_its_size(tmp_path: Path) -> None:

@@ -94,8 +94,9 @@ def test_the_tool_points_out_of_the_hand_with_the_tips_before_it(kind: str) -> N
 def test_a_hand_that_points_elsewhere_has_its_tool_there(side: float) -> None:
     """Everything turned about y by 90 degrees, this way or that: z becomes x, or -x."""
     turn = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.0, side * np.pi / 2, 0.0))
-    joints, hulls = zip(finger(1.0), finger(-1.0), strict=True)
-    moved = [replace(joint, origin=turn @ joint.origin) for joint in joints]
+    both = (finger(1.0), finger(-1.0))
+    moved = [replace(joint, origin=turn @ joint.origin) for joint, _ in both]
+    hulls = [one for _, one in both]
     palm = hull(turn.apply(PALM.vertices))
     gripper = own_fingers(
         (moved[0], moved[1]), (palm,), ((hulls[0],), (hulls[1],)), Pose(), None, 40.0

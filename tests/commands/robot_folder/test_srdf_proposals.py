@@ -103,6 +103,8 @@ def test_an_arm_that_is_stretched_out_meets_itself_or_hangs_low_may_not_drive() 
     """The elbow straight and the shoulder a little raised: the hand is 0.8 m in front."""
     level = (HOME[0], -0.3, 0.0, -1.2, HOME[4], HOME[5])
     assert "stretched out by" in only_complaint(level)
+    low = (HOME[0], 0.0, 0.0, *HOME[3:])
+    assert "m high there" in only_complaint(low)
     folded = (HOME[0], -1.5, 3.05, 0.0, 0.0, 0.0)
     assert "meet there" in only_complaint(folded)
     down = (HOME[0], 1.2, 0.3, HOME[3], HOME[4], HOME[5])
