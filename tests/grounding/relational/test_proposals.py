@@ -64,7 +64,7 @@ def test_a_body_of_a_similar_size_is_drawn_more_often(rng: np.random.Generator) 
 def test_a_body_that_no_demonstration_is_like_draws_the_nearest_one(
     rng: np.random.Generator,
 ) -> None:
-    model = transfer((coordinates(0.01), (0.0, 0.0, 0.0)), (coordinates(0.02), (0.0, 0.0, 1.0)))
+    model = transfer((coordinates(0.02), (0.0, 0.0, 1.0)), (coordinates(0.01), (0.0, 0.0, 0.0)))
     _, drawn = model.choose(view(size=(50.0, 50.0, 51.0)), 100, rng)
     assert (drawn[:, 2] == 0.02).all()
 
