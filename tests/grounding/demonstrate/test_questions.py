@@ -36,7 +36,7 @@ def stage() -> Stage:
 def learned(monkeypatch: pytest.MonkeyPatch) -> LearnedRelation:
     """What the weights are: a relation of whose committee nobody asks anything here."""
     made = LearnedRelation.__new__(LearnedRelation)
-    made.committee = COMMITTEE
+    made.committee = COMMITTEE  # pyright: ignore[reportAttributeAccessIssue]
     monkeypatch.setattr(module, "load_grounding", lambda path: made)
     return made
 

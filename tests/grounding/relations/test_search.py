@@ -92,7 +92,7 @@ def test_a_condition_that_repeats_another_does_not_pay() -> None:
     good, bad = np.full((5, 1), 0.3), np.linspace(0.5, 0.9, 4)[:, None]
     e = evidence(good, bad)
     twice = replace(
-        e, measures=e.measures * 2, good=np.tile(good, 2), bad=np.tile(bad, 2),
+        e, measures=(*e.measures, *e.measures), good=np.tile(good, 2), bad=np.tile(bad, 2),
         base=np.tile(e.base, 2), period=np.zeros(2), zero=np.zeros(2), allowed=np.ones(2, bool),
     )  # fmt: skip
     ranked = found(twice)
