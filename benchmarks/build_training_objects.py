@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from grounding.bullet_objects import FILE, packed
+from grounding.bullet_objects import OBJECTS_FILE, packed
 from grounding.objects import MESHES, RANDOM
 from tamp.geometric.loading.meshes import find_mesh, load_mesh
 from tamp.geometric.scene.scene import Part
@@ -26,4 +26,4 @@ def from_files() -> dict[str, tuple[Part, ...]]:
 
 
 if __name__ == "__main__":
-    np.savez_compressed(FILE, **packed(from_files()))  # pyright: ignore[reportArgumentType]
+    np.savez_compressed(OBJECTS_FILE, **packed(from_files()))  # pyright: ignore[reportArgumentType]

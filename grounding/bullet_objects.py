@@ -13,14 +13,14 @@ import numpy as np
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Hull, Part, Shape
 
-FILE = Path(__file__).parent / "assets" / "bullet_objects.npz"
+OBJECTS_FILE = Path(__file__).parent / "assets" / "bullet_objects.npz"
 """Written by benchmarks/build_training_objects.py, with the licence beside it."""
 
 
 @lru_cache(maxsize=1)
 def bullet_objects() -> Mapping[str, tuple[Part, ...]]:
     """Return the parts of each object by its name, metres."""
-    with np.load(FILE, allow_pickle=False) as file:
+    with np.load(OBJECTS_FILE, allow_pickle=False) as file:
         arrays = {key: file[key] for key in file.files}
 
     vertices = np.split(arrays["vertices"], np.cumsum(arrays["vertex_counts"])[:-1])

@@ -14,16 +14,16 @@ from tamp.errors import InputError
 
 Arrays = Mapping[str, NDArray[Any]]
 
-FAR = 1e4
+FARTHEST_M = 1e4
 """No body of a scene is farther from its origin, metres."""
 
-LARGEST = 1e3
+LARGEST_SIZE_M = 1e3
 """No body or place is larger, metres, and no scale, a factor."""
 
-RIGID = 1e-4
+RIGIDITY_TOLERANCE = 1e-4
 """By so much the entries of R^T R of a pose's rotation R may differ from those of the identity."""
 
-COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
+SCENE_COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "holds": ("b", ()),
     "kind": ("i", ()),
     "body": ("i", ("b",)),
@@ -38,7 +38,7 @@ COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
 shape of a row.
 """
 
-PARTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
+PART_COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "part_template": ("i", ()),
     "part_shape": ("i", ()),
     "part_size": ("f", (3,)),
@@ -48,19 +48,19 @@ PARTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
 }
 """The same of those with a row a part of a body."""
 
-POINTS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
+HULL_COLUMNS: Mapping[str, tuple[str, tuple[int | str, ...]]] = {
     "vertices": ("f", (3,)),
     "faces": ("i", (3,)),
 }
 """The same of the hulls' corners and triangles."""
 
-BLOCK = 4096
+SCENES_PER_BLOCK = 4096
 """Scenes whose poses are checked at a time, so that the check takes little memory."""
 
 BOX, CYLINDER, SPHERE, HULL = range(4)
 """The numbers of the shapes in `part_shape`."""
 
-WORDS = {"b": "truth values (0 or 1)", "i": "integers", "f": "numbers"}
+KIND_WORDS = {"b": "truth values (0 or 1)", "i": "integers", "f": "numbers"}
 
 
 def check_card(card: Mapping[str, Any]) -> None:
@@ -111,7 +111,7 @@ def check_arrays(arrays: Arrays, card: Mapping[str, Any]) -> None:
     Raises:
         InputError: The first array that is wrong, and its row, counted from 0.
     """
-    for name in (*COLUMNS, *PARTS, *POINTS):
+    for name in (*SCENE_COLUMNS, *PART_COLUMNS, *HULL_COLUMNS):
         if name not in arrays:
             raise InputError(f"array '{name}' is missing")
     scenes, bodies = _length(arrays, "holds"), 0
@@ -120,19 +120,21 @@ def check_arrays(arrays: Arrays, card: Mapping[str, Any]) -> None:
     if scenes == 0:
         raise InputError("it has no scene")
     for names, length in (
-        (COLUMNS, scenes),
-        (PARTS, _length(arrays, "part_template")),
-        (POINTS, None),
+        (SCENE_COLUMNS, scenes),
+        (PART_COLUMNS, _length(arrays, "part_template")),
+        (HULL_COLUMNS, None),
     ):
         for name, (kind, row) in names.items():
             _check(
                 name, arrays[name], kind, tuple(bodies if n == "b" else int(n) for n in row), length
             )
     for name, array in arrays.items():
-        if name not in (*COLUMNS, *PARTS, *POINTS) and (array.ndim == 0 or len(array) != scenes):
+        if name not in (*SCENE_COLUMNS, *PART_COLUMNS, *HULL_COLUMNS) and (
+            array.ndim == 0 or len(array) != scenes
+        ):
             rows = len(array) if array.ndim else 1
             raise InputError(f"array '{name}' has {rows:,} rows, 'holds' has {scenes:,}")
-        if name not in (*COLUMNS, *PARTS, *POINTS) and array.dtype.kind == "f":
+        if name not in (*SCENE_COLUMNS, *PART_COLUMNS, *HULL_COLUMNS) and array.dtype.kind == "f":
             _refuse(name, ~np.isfinite(array), "is not finite")
     if card.get("count", scenes) != scenes:
         raise InputError(f"the card says {card['count']:,} scenes, array 'holds' has {scenes:,}")
@@ -154,12 +156,12 @@ def _check_scenes(arrays: Arrays, kinds: int, templates: int) -> None:
     _refuse("body", body[:, :2] < 0, "is missing: a scene has two arguments")
     there = body >= 0
     scale = arrays["scale"]
-    _refuse("scale", there & ~((scale > 0.0) & (scale <= LARGEST)), "is no scale")
+    _refuse("scale", there & ~((scale > 0.0) & (scale <= LARGEST_SIZE_M)), "is no scale")
     _check_rigid("pose", arrays["pose"])
     _check_rigid("region", arrays["region"])
-    _refuse("size", ~(size[:, :2] > 0.0) | (size[:, :2] > LARGEST), "is no size")
+    _refuse("size", ~(size[:, :2] > 0.0) | (size[:, :2] > LARGEST_SIZE_M), "is no size")
     _refuse("size", ~(size[:, 2] > 0.0), "is no height")  # that above an open surface is infinite
-    _refuse("box", ~(np.abs(box) <= FAR), "is too far away")
+    _refuse("box", ~(np.abs(box) <= FARTHEST_M), "is too far away")
     _refuse("box", box[:, 0] > box[:, 1], "is beyond the other corner")
 
 
@@ -178,11 +180,11 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
     _refuse("part_shape", (shape < 0) | (shape > HULL), "is none of box, cylinder, sphere, hull")
     lengths = np.array([3, 2, 1, 0])[shape]
     used = np.arange(3) < lengths[:, None]
-    _refuse("part_size", used & ~((size > 0.0) & (size <= LARGEST)), "is no length")
-    _refuse("part_pose", ~(np.abs(pose[:, :3]) <= FAR), "is too far away")
+    _refuse("part_size", used & ~((size > 0.0) & (size <= LARGEST_SIZE_M)), "is no length")
+    _refuse("part_pose", ~(np.abs(pose[:, :3]) <= FARTHEST_M), "is too far away")
     _refuse(
         "part_pose",
-        ~(np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1.0) <= RIGID),
+        ~(np.abs(np.linalg.norm(pose[:, 3:], axis=1) - 1.0) <= RIGIDITY_TOLERANCE),
         "is no unit quaternion",
     )
 
@@ -198,7 +200,7 @@ def _check_parts(arrays: Arrays, templates: int) -> None:
             )
     _refuse("part_vertices", hull & (counts["vertices"] < 4), "says fewer corners than a solid has")
     _refuse("part_faces", hull & (counts["faces"] < 4), "says fewer triangles than a solid has")
-    _refuse("vertices", ~(np.abs(arrays["vertices"]) <= FAR), "is too far away")
+    _refuse("vertices", ~(np.abs(arrays["vertices"]) <= FARTHEST_M), "is too far away")
     most = np.repeat(counts["vertices"], counts["faces"])[:, None]
     _refuse(
         "faces", (arrays["faces"] < 0) | (arrays["faces"] >= most), "is none of its hull's corners"
@@ -210,7 +212,7 @@ def _check(
 ) -> None:
     allowed = {"b": "biu", "i": "iu", "f": "f"}[kind]
     if array.dtype.kind not in allowed:
-        raise InputError(f"array '{name}' holds '{array.dtype}', not {WORDS[kind]}")
+        raise InputError(f"array '{name}' holds '{array.dtype}', not {KIND_WORDS[kind]}")
     if array.ndim != 1 + len(row) or array.shape[1:] != tuple(row):
         wanted = "rows" if not row else f"rows of shape {'x'.join(map(str, row))}"
         raise InputError(
@@ -218,7 +220,7 @@ def _check(
             f"not {wanted}"
         )
     if length is not None and len(array) != length:
-        other = "holds" if name in COLUMNS else "part_template"
+        other = "holds" if name in SCENE_COLUMNS else "part_template"
         raise InputError(f"array '{name}' has {len(array):,} rows, '{other}' has {length:,}")
     if kind == "b" and array.dtype.kind != "b":
         _refuse(name, (array < 0) | (array > 1), "is neither 0 nor 1")
@@ -231,17 +233,19 @@ def _check(
 def _check_rigid(name: str, matrices: NDArray[Any]) -> None:
     """Check that T_world_body or T_body_region, shape (..., 4, 4), are rigid transforms."""
     _refuse(
-        name, np.asarray(~(np.abs(matrices[..., :3, 3]) <= FAR).all(axis=-1)), "is too far away"
+        name,
+        np.asarray(~(np.abs(matrices[..., :3, 3]) <= FARTHEST_M).all(axis=-1)),
+        "is too far away",
     )
     wrong = np.zeros(matrices.shape[:-2], dtype=bool)
-    for start in range(0, len(matrices), BLOCK):
-        some = matrices[start : start + BLOCK]
+    for start in range(0, len(matrices), SCENES_PER_BLOCK):
+        some = matrices[start : start + SCENES_PER_BLOCK]
         turn = some[..., :3, :3]
         product = np.swapaxes(turn, -1, -2) @ turn
-        wrong[start : start + BLOCK] = (
-            ~(np.abs(product - np.eye(3)) <= RIGID).all(axis=(-1, -2))
+        wrong[start : start + SCENES_PER_BLOCK] = (
+            ~(np.abs(product - np.eye(3)) <= RIGIDITY_TOLERANCE).all(axis=(-1, -2))
             | ~(np.linalg.det(turn) > 0.0)
-            | ~(np.abs(some[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) <= RIGID).all(axis=-1)
+            | ~(np.abs(some[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) <= RIGIDITY_TOLERANCE).all(axis=-1)
         )
     _refuse(name, wrong, "is no pose: a rotation and a place")
 

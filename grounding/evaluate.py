@@ -19,7 +19,7 @@ from grounding.paper.blind_ceiling import blind_ceiling
 from grounding.paper.oracle import CLOUD_NEAR_M, published_oracle
 from tamp.simulation.engines import open_drops
 
-NOTHING = "nothing proposed"
+NOTHING_PROPOSED = "nothing proposed"
 """What is counted where a model knows of no pose."""
 
 
@@ -97,11 +97,13 @@ def evaluate(
             poses = model.propose(situation, 1, rng)
             times.append(time.perf_counter() - started)
             verdict = drop_verdicts(situation, poses, drops, items)[0] if len(poses) else None
-            verdicts[str(verdict or NOTHING)] += 1
+            verdicts[str(verdict or NOTHING_PROPOSED)] += 1
 
             more = [model.propose(situation, 1, rng) for _ in range(draws - 1)]
             for drawn in (poses, *more):
-                papers[str(paper_verdicts(situation, drawn)[0] if len(drawn) else NOTHING)] += 1
+                papers[
+                    str(paper_verdicts(situation, drawn)[0] if len(drawn) else NOTHING_PROPOSED)
+                ] += 1
                 published += [
                     published_oracle(situation, drawn, near).sum() for near in (NEAR, CLOUD_NEAR_M)
                 ]

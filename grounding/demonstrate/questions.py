@@ -20,10 +20,10 @@ from grounding.relations.situation import joined, situation_of
 from grounding.runtime import Proposer
 from tamp.errors import InputError
 
-POOL = 12
+POOL_SCENES = 12
 """Scenes of which the questions are chosen."""
 
-AT_ONCE = 3
+QUESTIONS_AT_ONCE = 3
 """Questions that are chosen at a time; then it is worth to learn again."""
 
 
@@ -54,9 +54,9 @@ def telling_stages(uses: Uses, rng: Random) -> list[Stage]:
     other = situations.rows(np.flatnonzero(~holds)) if not holds.all() else None
     evidence = gather(situations.rows(np.flatnonzero(holds)), other, rng)
 
-    pool = candidates(learned, examples_of(shown), POOL, rng)
+    pool = candidates(learned, examples_of(shown), POOL_SCENES, rng)
     if not pool:
         raise InputError("no scene to ask about was found", remedy="Go on with the next scene")
     found = joined([situation_of(one.scene, one.arguments) for one in pool])
-    rows = questions(evidence, learned.committee, found, AT_ONCE)
+    rows = questions(evidence, learned.committee, found, QUESTIONS_AT_ONCE)
     return [Stage(pool[row].bodies, pool[row].scene, pool[row].arguments) for row in rows.tolist()]

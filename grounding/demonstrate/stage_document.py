@@ -21,7 +21,7 @@ from tamp.view.document import packed_meshes
 MOST_FACES = 12
 """Ways up that a body can be turned to."""
 
-FLOOR = 3.0
+FLOOR_MARGIN_M = 3.0
 """Metres of floor around what is shown."""
 
 
@@ -51,7 +51,7 @@ def stage_document(stage: Stage, number: int) -> dict[str, Any]:
         ],
         "view": {"target": target.tolist(), "yaw": yaw + np.pi, "radius": radius},
         "front": None if stand is None else [round(float(x), 4) for x in front_edge(stand)],
-        "floor": FLOOR,
+        "floor": FLOOR_MARGIN_M,
     }
 
 

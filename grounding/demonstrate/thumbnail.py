@@ -17,16 +17,16 @@ from tamp.geometric.scene.scene import Scene
 from tamp.view.appearance import body_meshes
 from tamp.view.rasterizer import Camera, render, triangles
 
-SIZE = (168, 112)
+PICTURE_SIZE_PX = (168, 112)
 """Columns and rows."""
 
-ANGLE = 30.0
+VIEW_ANGLE_DEG = 30.0
 """Of view from top to bottom, degrees."""
 
-PITCH = math.radians(32.0)
+EYE_PITCH_RAD = math.radians(32.0)
 """How far the eye looks down, radians."""
 
-LEAST = 0.16
+LEAST_RADIUS_M = 0.16
 """Metres around the arguments that are seen at least."""
 
 
@@ -41,7 +41,7 @@ def thumbnail(scene: Scene, arguments: tuple[str, ...]) -> bytes:
         if len(mesh.faces)
     ]
     content = io.BytesIO()
-    Image.fromarray(render(parts, _camera(scene, arguments), SIZE)).save(content, "PNG")
+    Image.fromarray(render(parts, _camera(scene, arguments), PICTURE_SIZE_PX)).save(content, "PNG")
     return content.getvalue()
 
 
@@ -56,11 +56,11 @@ def _camera(scene: Scene, arguments: tuple[str, ...]) -> Camera:
         ]
     )
     middle = (corners.min(axis=0) + corners.max(axis=0)) / 2
-    radius = max(float(np.linalg.norm(corners - middle, axis=1).max()), LEAST)
+    radius = max(float(np.linalg.norm(corners - middle, axis=1).max()), LEAST_RADIUS_M)
 
     yaw = viewer_yaw(scene, arguments)
-    ahead = np.array([math.cos(yaw), math.sin(yaw)]) * math.cos(PITCH)
-    out = np.array([-ahead[0], -ahead[1], math.sin(PITCH)])
-    eye = middle + out * radius / math.sin(math.radians(ANGLE) / 2)
+    ahead = np.array([math.cos(yaw), math.sin(yaw)]) * math.cos(EYE_PITCH_RAD)
+    out = np.array([-ahead[0], -ahead[1], math.sin(EYE_PITCH_RAD)])
+    eye = middle + out * radius / math.sin(math.radians(VIEW_ANGLE_DEG) / 2)
     (x, y, z), (a, b, c) = eye.tolist(), middle.tolist()
-    return Camera((x, y, z), (a, b, c), ANGLE)
+    return Camera((x, y, z), (a, b, c), VIEW_ANGLE_DEG)

@@ -18,10 +18,10 @@ from tamp.geometric.scene.scene import Scene
 from tamp.system.files import find_problem
 from tamp.system.outputs import write_whole
 
-AWAY = 0.8
+ROBOT_DISTANCE_M = 0.8
 """Metres between the furniture and the middle of the robot's base at the start."""
 
-AROUND = 3.0
+ROOM_MARGIN_M = 3.0
 """Metres of room around the furniture."""
 
 
@@ -116,10 +116,13 @@ def _in_front(stage: Stage) -> tuple[str, str]:
     yaw = viewer_yaw(scene, stage.arguments)
     stand = stand_of(scene, stage.arguments) or next(iter(scene.bodies.values()))
     x, y = stand.pose.position[:2]
-    back = depth(stand) / 2 + AWAY
+    back = depth(stand) / 2 + ROBOT_DISTANCE_M
     base = f"[{x - back * math.cos(yaw):.3f}, {y - back * math.sin(yaw):.3f}, {yaw:.4f}]"
-    room = f"{{x: [{x - AROUND:.3f}, {x + AROUND:.3f}], y: [{y - AROUND:.3f}, {y + AROUND:.3f}]}}"
-    return f"{{model: panda_mobile, base: {base}}}", room
+    room = ", ".join(
+        f"{axis}: [{middle - ROOM_MARGIN_M:.3f}, {middle + ROOM_MARGIN_M:.3f}]"
+        for axis, middle in (("x", x), ("y", y))
+    )
+    return f"{{model: panda_mobile, base: {base}}}", f"{{{room}}}"
 
 
 def _of(scene: Scene) -> tuple[str, str]:

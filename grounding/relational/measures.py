@@ -18,7 +18,7 @@ SURROUNDINGS_M = 0.4
 """Surroundings farther from the region than this are left out, metres."""
 
 
-WALL = 0.002
+WALL_RISE_M = 0.002
 """Parts of the support that rise so far above the region's plane are in the way, metres."""
 
 
@@ -85,7 +85,9 @@ def _walls(support: BodyGeometry, region: Region) -> tuple[Placed, ...]:
         + np.ptp(boxes, axis=1) @ np.abs(matrix[2, :3]) / 2
         + matrix[2, 3]
     )
-    return tuple(Placed(support.pieces[index], matrix) for index in np.flatnonzero(tops > WALL))
+    return tuple(
+        Placed(support.pieces[index], matrix) for index in np.flatnonzero(tops > WALL_RISE_M)
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,13 +15,13 @@ from grounding.relational.coordinates import EncodedExample, RelationalCoordinat
 from grounding.relational.measures import Measures, RegionFrame
 from tamp.geometric.scene.pose import Array
 
-JITTER = 0.35
+SHARE_JITTER = 0.35
 """How far the horizontal share is moved, of 1."""
 
-SIMILAR = 4.0
+SIZE_LIKENESS = 4.0
 """How much a demonstration's weight falls with the squared difference of the bodies' sizes."""
 
-ALIKE = 8.0
+FACE_LIKENESS = 8.0
 """The same for faces."""
 
 
@@ -69,12 +69,12 @@ class Transfer:
             view.steadiness >= min(self.chart.steadiness, view.steadiness.max())
         )
         apart = self.faces[chosen][:, None] - view.faces.descriptors[steady]  # (n, f, 4)
-        likely = -ALIKE * np.einsum("nfk,nfk->nf", apart, apart)
+        likely = -FACE_LIKENESS * np.einsum("nfk,nfk->nf", apart, apart)
         faces = steady[np.argmax(likely + rng.gumbel(size=likely.shape), axis=1)]
         coordinates = self.coordinates[chosen]
-        share = coordinates[:, :2] * rng.choice([-1.0, 1.0], size=(count, 1)) + JITTER * rng.normal(
-            size=(count, 2)
-        )
+        share = coordinates[:, :2] * rng.choice(
+            [-1.0, 1.0], size=(count, 1)
+        ) + SHARE_JITTER * rng.normal(size=(count, 2))
         coordinates[:, :2] = 1.0 - np.abs(np.mod(share - 1.0, 4.0) - 2.0)  # reflected into [-1, 1]
         yaw = np.arctan2(coordinates[:, 6], coordinates[:, 5]) + rng.normal(scale=0.5, size=count)
         coordinates[:, 5], coordinates[:, 6] = np.cos(yaw), np.sin(yaw)
@@ -87,5 +87,5 @@ def _weights(transfer: Transfer, size: tuple[float, float, float]) -> Array:
     shape (n,).
     """
     apart = transfer.sizes - np.array(size)
-    logits = -SIMILAR * np.einsum("nk,nk->n", apart, apart)
+    logits = -SIZE_LIKENESS * np.einsum("nk,nk->n", apart, apart)
     return np.cumsum(np.exp(logits - logits.max()))

@@ -9,10 +9,10 @@ import numpy as np
 from grounding.relations.measure_kernels import _gap, bearing, frames_of, span
 from tamp.system.compilation import njit
 
-OUTSIDE = 0.03
+BESIDE_OVERLAP_M = 0.03
 """A body counts as beside another one where it overlaps it by less along an axis, metres."""
 
-SLIDES = 4
+GAP_STEPS = 4
 """Steps by which a gap is reached."""
 
 
@@ -41,7 +41,7 @@ def _coordinate(corners, counts, inner, shape, R, p, origin, mode, angle, axis):
     x, a = _extent(corners, counts, shape, R, p, 0, angle)
     y, b = _extent(corners, counts, shape, R, p, origin, angle)
     d = x - y
-    if mode == 1 and abs(d) > a + b - OUTSIDE:
+    if mode == 1 and abs(d) > a + b - BESIDE_OVERLAP_M:
         return abs(d) - a - b, math.copysign(1.0, d)
     if mode == 2:
         return d / max(b, 1e-3), 0.0
@@ -188,7 +188,7 @@ def carry(corners, counts, inner, shape, Rs, ps, supports, codes, place, outside
             _furnish(corners, counts, shape[n], R, p, support, mode, place[n], spot[n])
         elif mode == 4:
             direction = angle + place[n, 0]
-            for _ in range(SLIDES):
+            for _ in range(GAP_STEPS):
                 gap = _gap(corners, counts, shape[n], R, p, origin, False)
                 p[0, 0] += math.cos(direction) * (place[n, 1] - gap)
                 p[0, 1] += math.sin(direction) * (place[n, 1] - gap)

@@ -18,7 +18,7 @@ from grounding.weights import read_weights
 from tamp.errors import InputError
 from tamp.geometric.scene.classifier import LIKELY_PROBABILITY
 
-PICTURES = 12
+MOST_PICTURES = 12
 """Pictures that are written, at most."""
 
 
@@ -70,9 +70,9 @@ def evaluate_own(
         figures[key] = share
 
     if pictures is not None:
-        for number, one in enumerate(found[:PICTURES], 1):
+        for number, one in enumerate(found[:MOST_PICTURES], 1):
             write_picture(pictures / f"{name}_{number:02d}.png", one.bodies, one.arguments, name)
-        print(f"{pictures}: {min(len(found), PICTURES)} pictures of what it would do")
+        print(f"{pictures}: {min(len(found), MOST_PICTURES)} pictures of what it would do")
     print(json.dumps(figures))
 
 

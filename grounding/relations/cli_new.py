@@ -54,7 +54,7 @@ def new(chosen: New) -> None:
             f"{name}: learned from {count} demonstrations",
         )
         texts = {path: both for path, both in texts.items() if both[0] != both[1]}
-        check_outputs({str(path): path for path in (*texts, out)}, read)
+        check_outputs({"--out": out, **{str(path): path for path in texts}}, read)
         for path in texts:
             check_writable(path, "--add-to")
         print(diff(texts) or f"{chosen.add_to} has {name} already")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from grounding.relations.evidence import RIGHT, UNTOUCHED, ZERO, Bounds, Evidence, Settings
 from tamp.geometric.scene.pose import Array
 
-OFFSETS = {
+OFFSET_PRICES_NATS = {
     "middle": (1.5, False),
     "either side middle": (1.5, False),
     "gap above": (3.0, True),
@@ -23,7 +23,7 @@ OFFSETS = {
 }
 """Nats against an offset that is not zero, or against a gap (signed) that is none."""
 
-ENOUGH = 4
+ENOUGH_NEGATIVES = 4
 """Negatives from which on it counts what they vary."""
 
 
@@ -88,7 +88,7 @@ def prices(e: Evidence, s: Settings, bounds: Bounds) -> Array:
     in_bad = bounds.within(e.bad)
     kinds = np.array([one.kind for one in e.measures])
     price = np.array([one.cost for one in e.measures]) + RIGHT * bounds.missed
-    if len(e.bad) > ENOUGH:
+    if len(e.bad) > ENOUGH_NEGATIVES:
         price += s.idle * (in_bad.mean(axis=0) > 0.85)  # nobody varied it: no evidence
     price += s.idle * ((kinds == "turn") & (e.good.std(axis=0) < UNTOUCHED))
     middle = np.sort(e.good, axis=0)[len(e.good) // 2]
@@ -109,9 +109,9 @@ def _unnatural(e: Evidence, middle: Array) -> Array:
     price = np.zeros(len(e.measures))
     for column, one in enumerate(e.measures):
         kind = one.key.partition(": ")[0]
-        if kind not in OFFSETS:
+        if kind not in OFFSET_PRICES_NATS:
             continue
-        nats, signed = OFFSETS[kind]
+        nats, signed = OFFSET_PRICES_NATS[kind]
         off = -middle[column] if signed else abs(middle[column])
         price[column] = nats * (off > 2 * one.scale)
     return price

@@ -10,10 +10,10 @@ from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import RobotStart, Room, Scene
 from tamp.view.timeline import ShownAction, Timeline
 
-SIDE = 1.5
+ROOM_HALF_SIDE_M = 1.5
 """Half the side of the room in which it stands, metres."""
 
-SECONDS = 4.0
+JOINT_SECONDS = 4.0
 """That a joint takes through its range and back."""
 
 
@@ -22,7 +22,12 @@ def robot_timeline(robot: Robot, model: str) -> Timeline:
     and back; then its fingers close and open, if there are any.
     """
     start = RobotStart(model, (0.0, 0.0, 0.0), None)
-    scene = Scene(robot.name, {}, start, Room((-SIDE, SIDE), (-SIDE, SIDE)))
+    scene = Scene(
+        robot.name,
+        {},
+        start,
+        Room((-ROOM_HALF_SIDE_M, ROOM_HALF_SIDE_M), (-ROOM_HALF_SIDE_M, ROOM_HALF_SIDE_M)),
+    )
     home = rest_row(robot)
     actions: list[ShownAction] = []
     times: list[float] = [0.0]
@@ -33,7 +38,7 @@ def robot_timeline(robot: Robot, model: str) -> Timeline:
         for number, value in enumerate(values, start=1):
             row = home.copy()
             row[column] = value
-            times.append(began + SECONDS * number / len(values))
+            times.append(began + JOINT_SECONDS * number / len(values))
             rows.append(row)
         actions.append(ShownAction(name, (), began, times[-1], where))
 

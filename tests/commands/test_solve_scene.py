@@ -190,7 +190,7 @@ def test_a_reason_is_looked_for_where_there_is_no_plan(monkeypatch: pytest.Monke
     nothing, timeout = Written(None, None), solution(Outcome.TIMEOUT)
     asked = request("--why")
     assert follow_up(asked, LOADED, Planned(timeout, False), nothing).why == "because"
-    assert "looking for changes" in asked.shown.lines[0]
+    assert isinstance(asked.shown, Said) and "looking for changes" in asked.shown.lines[0]
     for wanted, planned in (
         (request(), Planned(timeout, False)), (asked, Planned(timeout, True)),
         (asked, Planned(solution(), False)),

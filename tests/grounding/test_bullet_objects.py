@@ -27,7 +27,7 @@ OBJECTS = {
 
 def test_what_is_packed_comes_out_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     np.savez(tmp_path / "objects.npz", allow_pickle=False, **packed(OBJECTS))
-    monkeypatch.setattr(module, "FILE", tmp_path / "objects.npz")
+    monkeypatch.setattr(module, "OBJECTS_FILE", tmp_path / "objects.npz")
     found = bullet_objects.__wrapped__()  # what the process keeps are the shipped ones
     assert list(found) == list(OBJECTS)
     for name, parts in OBJECTS.items():

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from grounding.checks import BLOCK, check_arrays, check_card
+from grounding.checks import SCENES_PER_BLOCK, check_arrays, check_card
 from tamp.errors import InputError
 
 CARD = {"relation": "on", "kinds": ["standing", "afloat"], "templates": ["table", "gem"]}
@@ -169,9 +169,11 @@ def test_a_body_alone_is_no_scene() -> None:
 
 
 def test_poses_beyond_the_first_block_are_checked_too() -> None:
-    arrays = sound(BLOCK + 2)
-    arrays["pose"][BLOCK + 1, 0, 0, 0] = 2.0
-    assert refused(arrays).startswith(f"array 'pose', row {BLOCK + 1}, entry 0: it is no pose")
+    arrays = sound(SCENES_PER_BLOCK + 2)
+    arrays["pose"][SCENES_PER_BLOCK + 1, 0, 0, 0] = 2.0
+    assert refused(arrays).startswith(
+        f"array 'pose', row {SCENES_PER_BLOCK + 1}, entry 0: it is no pose"
+    )
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grounding.dataset import Dataset
-from grounding.evaluate import NOTHING, accuracy, evaluate, wilson
+from grounding.evaluate import NOTHING_PROPOSED, accuracy, evaluate, wilson
 from grounding.oracles import Verdict
 from grounding.relation_scene import RelationScene
 from tamp.geometric.scene.pose import Array
@@ -67,7 +67,7 @@ def test_a_model_that_is_right_every_other_time(off: float, verdict: Verdict) ->
 def test_a_model_that_knows_of_no_pose() -> None:
     found = evaluate(Model(none=True), scenes())
     assert found.mca == found.settled == found.published == 0.0
-    assert found.failures == found.mca_failures == {NOTHING: 1.0}
+    assert found.failures == found.mca_failures == {NOTHING_PROPOSED: 1.0}
 
 
 def test_where_nobody_found_a_pose_only_what_the_model_finds_is_feasible() -> None:

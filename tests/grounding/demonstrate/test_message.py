@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from grounding.demonstrate.message import (
-    FARTHEST,
-    LONGEST,
+    FARTHEST_BODY_M,
+    LONGEST_WORD,
     read_angle,
     read_poses,
     read_word,
@@ -93,15 +93,15 @@ def test_what_is_no_rigid_transform(given: list[float]) -> None:
 
 @pytest.mark.parametrize("axis", [3, 7, 11])
 def test_a_body_that_is_too_far_away(axis: int) -> None:
-    near, far = ({f"n{axis}": -FARTHEST * share} for share in (1.0, 1.0001))
+    near, far = ({f"n{axis}": -FARTHEST_BODY_M * share} for share in (1.0, 1.0001))
     assert read_poses({"poses": {"cup": numbers(**near)}}, MOVABLE)
     assert refused({"cup": numbers(**far)}) == "cup is farther than 20 m away"
 
 
 def test_words() -> None:
     assert read_word({"text": "left_of a b"}, "text") == "left_of a b"
-    assert read_word({"text": "x" * LONGEST}, "text") == "x" * LONGEST
-    for message in ({}, {"text": None}, {"text": 3}, {"text": "x" * (LONGEST + 1)}):
+    assert read_word({"text": "x" * LONGEST_WORD}, "text") == "x" * LONGEST_WORD
+    for message in ({}, {"text": None}, {"text": 3}, {"text": "x" * (LONGEST_WORD + 1)}):
         with pytest.raises(InputError, match="'text' is missing"):
             read_word(message, "text")
 

@@ -9,7 +9,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from grounding.demonstrate.thumbnail import ANGLE, LEAST, SIZE, thumbnail
+from grounding.demonstrate.thumbnail import (
+    LEAST_RADIUS_M,
+    PICTURE_SIZE_PX,
+    VIEW_ANGLE_DEG,
+    thumbnail,
+)
 from grounding.relations.demonstration_text import BodyEntry
 from grounding.relations.scenes import loaded
 from tamp.geometric.scene.pose import Pose
@@ -34,7 +39,7 @@ def seen(
     }
     content = thumbnail(loaded(bodies, ("red", "blue")), ("red", "blue"))
     image = Image.open(io.BytesIO(content))
-    assert image.format == "PNG" and image.size == SIZE
+    assert image.format == "PNG" and image.size == PICTURE_SIZE_PX
     return np.asarray(image.convert("RGB")).astype(int)
 
 
@@ -51,7 +56,7 @@ def pixels(picture: np.ndarray, colour: list[float]) -> np.ndarray:
 def test_left_is_left_and_behind_is_above(yaw: float) -> None:
     picture = seen(yaw, red=(-0.2, -0.1), blue=(0.2, 0.1))
     (row, column), (other_row, other) = (pixels(picture, c).mean(axis=0) for c in (RED, BLUE))
-    assert column < SIZE[0] / 2 - 10 and other > SIZE[0] / 2 + 10
+    assert column < PICTURE_SIZE_PX[0] / 2 - 10 and other > PICTURE_SIZE_PX[0] / 2 + 10
     assert row > other_row + 3
 
 
@@ -60,12 +65,12 @@ def test_the_arguments_are_in_the_middle_wherever_they_are() -> None:
         picture = seen(0.4, red=(at[0] - 0.06, at[1]), blue=(at[0] + 0.06, at[1]))
         both = np.concatenate([pixels(picture, RED), pixels(picture, BLUE)])
         middle = (both.min(axis=0) + both.max(axis=0)) / 2
-        assert np.abs(middle - [SIZE[1] / 2, SIZE[0] / 2]).max() < 8
+        assert np.abs(middle - [PICTURE_SIZE_PX[1] / 2, PICTURE_SIZE_PX[0] / 2]).max() < 8
 
 
 def test_what_is_small_does_not_fill_the_picture() -> None:
-    """From where a ball of `LEAST` fills the height, a cube of 3 cm is a tenth of it wide."""
+    """From where a ball of `LEAST_RADIUS_M` fills the height, a cube of 3 cm is a tenth of it wide."""
     red = pixels(seen(0.0, red=(0.0, 0.0), blue=(0.05, 0.0), side=0.03), RED)
-    distance = LEAST / math.sin(math.radians(ANGLE) / 2)
-    wide = 0.03 / distance / (2 * math.tan(math.radians(ANGLE) / 2)) * SIZE[1]
+    distance = LEAST_RADIUS_M / math.sin(math.radians(VIEW_ANGLE_DEG) / 2)
+    wide = 0.03 / distance / (2 * math.tan(math.radians(VIEW_ANGLE_DEG) / 2)) * PICTURE_SIZE_PX[1]
     assert np.ptp(red[:, 1]) == pytest.approx(wide, abs=3)

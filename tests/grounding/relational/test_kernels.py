@@ -11,7 +11,7 @@ from grounding.relational.kernels import constraint_violations, describe_poses
 from tamp.geometric.scene.pose import Array, Pose
 
 SIZE = np.array([0.8, 0.6, 0.3])
-LOW, HIGH = np.array([[-0.1, 0.05, 0.002]]), np.array([[0.2, 0.15, 0.122]])
+LOW, HIGH = np.array([[-0.22, 0.05, 0.002]]), np.array([[0.2, 0.15, 0.122]])
 CENTRE = np.array([[0.06, 0.09, 0.05]])
 NEAREST, STEADY = np.array([0.07]), np.array([0.4])
 
@@ -31,7 +31,7 @@ def described(
 
 def test_lengths_are_told_coarsely_and_finely() -> None:
     """From the plane, below the ceiling, on top, at the sides, of the centre, to what is next."""
-    lengths = np.array([0.002, 0.178, 0.122, 0.15, 0.2, 0.21, 0.34, 0.07])
+    lengths = np.array([0.002, 0.178, 0.122, 0.15, 0.18, 0.21, 0.34, 0.07])
     found = described(np.eye(4))
     assert found[:8] == pytest.approx(np.tanh(8 * lengths), abs=1e-6)
     assert found[8:16] == pytest.approx(np.tanh(100 * lengths), abs=1e-6)
@@ -66,7 +66,7 @@ def test_a_body_on_another_face_is_not_tilted() -> None:
 def test_sizes_and_which_way_is_up() -> None:
     pose = Pose.from_xyz_rpy((0.0, 0.0, 0.0), (0.2, 0.0, 0.0)).matrix
     found = described(pose, hollow=True)
-    assert found[20:23] == pytest.approx([8 * 0.1, 8 * 0.3, 8 * 0.12], abs=1e-6)
+    assert found[20:23] == pytest.approx([8 * 0.1, 8 * 0.42, 8 * 0.12], abs=1e-6)
     assert found[24] == 1.0 and described(pose)[24] == 0.0
     assert found[28] == pytest.approx(math.cos(0.2), abs=1e-6)
     assert found[29:31] == pytest.approx([math.log(0.12), math.log(0.1)], abs=1e-6)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from grounding.relational.coordinates import EncodedExample
-from grounding.relational.proposals import ALIKE, JITTER, SIMILAR, Transfer
+from grounding.relational.proposals import FACE_LIKENESS, SHARE_JITTER, SIZE_LIKENESS, Transfer
 from tamp.geometric.scene.pose import Array
 
 COUNT = 20_000
@@ -55,7 +55,7 @@ def test_a_body_of_a_similar_size_is_drawn_more_often(rng: np.random.Generator) 
     far = (SIZE[0] + 0.4, SIZE[1], SIZE[2] - 0.3)  # 0.5 away
     model = transfer((coordinates(0.02), far), (coordinates(0.01), SIZE), (coordinates(0.03), SIZE))
     _, drawn = model.choose(view(), COUNT, rng)
-    odds = np.array([1.0, np.exp(-SIMILAR * 0.25), 1.0])
+    odds = np.array([1.0, np.exp(-SIZE_LIKENESS * 0.25), 1.0])
     assert near(shares(drawn[:, 2]), odds / odds.sum())
     _, drawn = model.choose(view(size=far), COUNT, rng)
     assert near(shares(drawn[:, 2]), odds[[1, 0, 1]] / odds[[1, 0, 1]].sum())
@@ -64,7 +64,7 @@ def test_a_body_of_a_similar_size_is_drawn_more_often(rng: np.random.Generator) 
 def test_a_body_that_no_demonstration_is_like_draws_the_nearest_one(
     rng: np.random.Generator,
 ) -> None:
-    model = transfer((coordinates(0.01), (0.0, 0.0, 0.0)), (coordinates(0.02), (0.0, 0.0, 1.0)))
+    model = transfer((coordinates(0.02), (0.0, 0.0, 1.0)), (coordinates(0.01), (0.0, 0.0, 0.0)))
     _, drawn = model.choose(view(size=(50.0, 50.0, 51.0)), 100, rng)
     assert (drawn[:, 2] == 0.02).all()
 
@@ -74,7 +74,7 @@ def test_a_face_is_chosen_that_is_like_the_one_shown_and_steady(rng: np.random.G
     body = view((0.05, [0.0] * 4), (0.3, [0.3, 0.0, 0.0, 0.4]), (0.1, [0.0] * 4))
     faces, _ = model.choose(body, COUNT, rng)
     assert {*faces.tolist()} == {1, 2}  # the first one tips over sooner than any that was shown
-    odds = np.array([np.exp(-ALIKE * 0.25), 1.0])
+    odds = np.array([np.exp(-FACE_LIKENESS * 0.25), 1.0])
     assert near(shares(faces), odds / odds.sum())
 
 
@@ -92,14 +92,16 @@ def test_places_are_mirrored_in_both_axes_at_once_and_moved(rng: np.random.Gener
     assert (drawn[:, 0] * drawn[:, 1]).mean() == pytest.approx(-0.08, abs=0.01)
     assert kept[:, 0].mean() > 0.3
     spread = drawn[:, 1].std()
-    assert spread == pytest.approx(np.hypot(JITTER, 0.2), rel=0.03)
+    assert spread == pytest.approx(np.hypot(SHARE_JITTER, 0.2), rel=0.03)
 
 
 def test_what_would_be_moved_out_is_reflected_at_the_border(rng: np.random.Generator) -> None:
     """At the border x = 1 - |move|: its mean is that of half a normal distribution below 1."""
     _, drawn = transfer((coordinates(share=(1.0, 0.0)), SIZE)).choose(view(), COUNT, rng)
     assert np.abs(drawn[:, :2]).max() <= 1.0
-    assert np.abs(drawn[:, 0]).mean() == pytest.approx(1 - JITTER * np.sqrt(2 / np.pi), abs=0.01)
+    assert np.abs(drawn[:, 0]).mean() == pytest.approx(
+        1 - SHARE_JITTER * np.sqrt(2 / np.pi), abs=0.01
+    )
 
 
 def test_the_yaw_is_turned_about_the_one_shown(rng: np.random.Generator) -> None:

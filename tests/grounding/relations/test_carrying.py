@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from grounding.relations.carrying import OUTSIDE, carry, coordinates_of, trouble, turned
+from grounding.relations.carrying import BESIDE_OVERLAP_M, carry, coordinates_of, trouble, turned
 from grounding.relations.charts import FREE, MODES
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
@@ -90,7 +90,7 @@ def test_beside_another_body_the_air_between_them_counts() -> None:
     place, outside, _ = coordinates(s, 1, WORLD, mode("edge"), FREE)
     assert np.allclose(place, [0.12, 0.01]) and outside.tolist() == [-1.0, 0.0]
 
-    near = 0.08 - OUTSIDE  # across they touch at 2 + 6 cm
+    near = 0.08 - BESIDE_OVERLAP_M  # across they touch at 2 + 6 cm
     for y, side in ((near - 1e-4, 0.0), (near + 1e-4, 1.0)):
         s = situation((THING, -0.25, y, 0.0), (BOX, 0.0, 0.0, 0.0))
         assert coordinates(s, 1, WORLD, mode("edge"), FREE)[1][1] == side

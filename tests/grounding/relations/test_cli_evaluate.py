@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from grounding.relations import cli_evaluate as module
-from grounding.relations.cli_evaluate import PICTURES, _judged, evaluate_own
+from grounding.relations.cli_evaluate import MOST_PICTURES, _judged, evaluate_own
 from tamp.errors import InputError
 
 
@@ -122,8 +122,8 @@ def test_some_pictures_into_a_new_folder(
 ) -> None:
     weights["found"] *= 4
     said, _ = evaluated(capsys, pictures=tmp_path / "new")
-    assert weights["pictures"] == [f"near_{n:02d}.png" for n in range(1, PICTURES + 1)]
-    assert f"{PICTURES} pictures" in said
+    assert weights["pictures"] == [f"near_{n:02d}.png" for n in range(1, MOST_PICTURES + 1)]
+    assert f"{MOST_PICTURES} pictures" in said
 
     (tmp_path / "full").mkdir()
     (tmp_path / "full" / "mine.png").touch()

@@ -9,7 +9,7 @@ import pytest
 
 from grounding.relations.catalogue import Measure
 from grounding.relations.evidence import RIGHT, UNTOUCHED, ZERO, Bounds, Evidence, Settings
-from grounding.relations.search import ENOUGH, OFFSETS, conjunctions, prices
+from grounding.relations.search import ENOUGH_NEGATIVES, OFFSET_PRICES_NATS, conjunctions, prices
 from tamp.geometric.scene.pose import Array
 
 SCALE = 0.01
@@ -92,7 +92,7 @@ def test_a_condition_that_repeats_another_does_not_pay() -> None:
     good, bad = np.full((5, 1), 0.3), np.linspace(0.5, 0.9, 4)[:, None]
     e = evidence(good, bad)
     twice = replace(
-        e, measures=e.measures * 2, good=np.tile(good, 2), bad=np.tile(bad, 2),
+        e, measures=(*e.measures, *e.measures), good=np.tile(good, 2), bad=np.tile(bad, 2),
         base=np.tile(e.base, 2), period=np.zeros(2), zero=np.zeros(2), allowed=np.ones(2, bool),
     )  # fmt: skip
     ranked = found(twice)
@@ -125,8 +125,8 @@ def test_a_condition_costs_what_its_measure_has_to_prove() -> None:
 
 def test_what_no_negative_varied_is_no_evidence() -> None:
     good = [0.3, 0.31, 0.32]
-    assert price(named("m"), good, [0.3] * (ENOUGH + 1)) == SETTINGS.idle
-    assert price(named("m"), good, [0.3] * ENOUGH) == 0.0
+    assert price(named("m"), good, [0.3] * (ENOUGH_NEGATIVES + 1)) == SETTINGS.idle
+    assert price(named("m"), good, [0.3] * ENOUGH_NEGATIVES) == 0.0
     assert price(named("m"), good, [0.3] * 8 + [0.9] * 2) == 0.0
 
 
@@ -157,9 +157,9 @@ def test_nobody_means_how_deep_one_body_is_in_another(key: str) -> None:
     assert price(named(key), np.full(3, -ZERO)) == price(named(key), np.full(3, 3 * ZERO)) == 0.0
 
 
-@pytest.mark.parametrize("kind", OFFSETS)
+@pytest.mark.parametrize("kind", OFFSET_PRICES_NATS)
 def test_an_offset_has_to_be_explained_a_gap_only_where_it_is_none(kind: str) -> None:
-    nats, gap = OFFSETS[kind]
+    nats, gap = OFFSET_PRICES_NATS[kind]
     offset = named(f"{kind}: x of the world")
     assert gap is ("gap" in kind)
     assert price(offset, np.full(3, -0.03)) == nats
@@ -170,5 +170,5 @@ def test_an_offset_has_to_be_explained_a_gap_only_where_it_is_none(kind: str) ->
 
 def test_the_middle_demonstration_counts() -> None:
     offset = named("middle: x")
-    assert price(offset, [0.0, 0.0, 0.03, 0.04, 0.04]) == OFFSETS["middle"][0]
+    assert price(offset, [0.0, 0.0, 0.03, 0.04, 0.04]) == OFFSET_PRICES_NATS["middle"][0]
     assert price(offset, [0.0, 0.0, 0.01, 0.04, 0.04]) == 0.0
