@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import configparser
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,13 +75,18 @@ def layers() -> list[str]:
     return parser["importlinter:contract:layers"]["layers"].split("\n")[1:]
 
 
-def imports(*, late: bool) -> nx.DiGraph:
-    """Return which module imports which, those for types aside; `late` ones in functions, too."""
-    graph = nx.DiGraph()
-    names = {
+def names_of_modules() -> dict[str, Path]:
+    """Return the file of each module by its dotted name."""
+    return {
         ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file
         for file in sources(*PACKAGES)
     }
+
+
+def imports(*, late: bool) -> nx.DiGraph:
+    """Return which module imports which, those for types aside; `late` ones in functions, too."""
+    graph = nx.DiGraph()
+    names = names_of_modules()
     for name, file in names.items():
         tree = ast.parse(file.read_text(encoding="utf-8"))
         skipped = {
@@ -117,6 +123,29 @@ def upward() -> list[tuple[str, str]]:
     ]  # fmt: skip
 
 
+def _named(node: ast.AST) -> Iterator[str]:
+    """Yield modules that an import names, or a string of code that is run in a process of its own."""
+    if isinstance(node, ast.ImportFrom) and node.module:
+        yield node.module
+        yield from (f"{node.module}.{one.name}" for one in node.names)
+    elif isinstance(node, ast.Import):
+        yield from (one.name for one in node.names)
+    elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield from re.findall(r"\b(?:tamp|grounding)(?:\.\w+)+", node.value)
+
+
+def untested() -> list[str]:
+    """Return modules that no test asks directly: none names them, and no test file has their name."""
+    tests = {file: file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("*.py")}
+    own = {file.stem.removeprefix("test_") for file in tests}
+    asked = {name for text in tests.values() for node in ast.walk(ast.parse(text)) for name in _named(node)}
+    return [
+        name
+        for name, file in names_of_modules().items()
+        if file.stem != "__init__" and file.stem not in own and name not in asked
+    ]
+
+
 def lines_of(*folders: str) -> int:
     return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in sources(*folders))
 
@@ -140,6 +169,7 @@ def measures() -> list[Measure]:
             "docstrings of functions that open with a verb, share",
             len(verbs) / len(docstrings), ">= 0.99",
         ),
+        Measure("modules that no test asks directly", len(untested()), "<= 3"),
         Measure("longest function, lines", max(map(len, bodies)), "<= 60"),
         Measure(
             "lines of tests a line of source", lines_of("tests") / lines_of(*PACKAGES), ">= 0.6"
