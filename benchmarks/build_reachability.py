@@ -14,6 +14,7 @@ import itertools
 import numpy as np
 from scipy.ndimage import minimum_filter
 
+from benchmarks.common import without_options
 from tamp.commands.robot_folder.reach_table import directions, rotation_with_up
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.inverse_kinematics import ArmIK
@@ -81,4 +82,5 @@ def main() -> None:
 
 
 if __name__ == "__main__":
+    without_options(__doc__)
     main()

@@ -9,8 +9,8 @@ normals are left out, which makes 9.1 MB to 3.
 
 from __future__ import annotations
 
+import argparse
 import shutil
-import sys
 from pathlib import Path
 
 from tamp.view.mesh import Mesh, read_mesh
@@ -39,9 +39,10 @@ def written(meshes: list[Mesh], name: str) -> tuple[str, str]:
 
 def main() -> None:
     """Copy and thin out."""
-    if len(sys.argv) > 1:
-        source = Path(sys.argv[1])
-    else:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path, nargs="?", metavar="FOLDER")
+    source = parser.parse_args().folder
+    if source is None:
         import pybullet_data
 
         source = Path(pybullet_data.getDataPath()) / "franka_panda"

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.common import without_options
 from grounding.bullet_objects import OBJECTS_FILE, packed
 from grounding.objects import MESHES, RANDOM
 from tamp.geometric.loading.meshes import find_mesh, load_mesh
@@ -26,4 +27,5 @@ def from_files() -> dict[str, tuple[Part, ...]]:
 
 
 if __name__ == "__main__":
+    without_options(__doc__)
     np.savez_compressed(OBJECTS_FILE, **packed(from_files()))  # pyright: ignore[reportArgumentType]

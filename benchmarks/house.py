@@ -16,6 +16,8 @@ from pathlib import Path
 
 import networkx as nx
 
+from benchmarks.common import without_options
+
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("tamp", "grounding")
 AIR_FROM_LINES = 20
@@ -201,5 +203,6 @@ def opens_with_verb(docstring: str) -> bool:
 
 
 if __name__ == "__main__":
+    without_options(__doc__)
     for one in measures():
         print(f"{one.name:55} {one.shown:>8}   {one.limit:>8}{'' if one.holds else '   NOT HELD'}")

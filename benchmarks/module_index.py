@@ -11,6 +11,8 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
+from benchmarks.common import without_options
+
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "modules.md"
 PACKAGES = ("tamp", "grounding")
@@ -64,5 +66,6 @@ def _public(path: Path) -> list[str]:
 
 
 if __name__ == "__main__":
+    without_options(__doc__)
     PAGE.write_text(index(), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)} written")

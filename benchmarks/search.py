@@ -184,5 +184,6 @@ def representations() -> None:
 
 
 if __name__ == "__main__":
+    common.without_options(__doc__)
     scale()
     representations()

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import benchmarks
 from benchmarks.cold_start import import_times
 from benchmarks.common import percentile, record, times, wilson
 from benchmarks.scale import exponent
@@ -48,3 +49,21 @@ def test_import_times_add_up_by_package() -> None:
 
 def test_the_exponent_of_growth() -> None:
     assert exponent(0.5, 0.5 * 5.0**1.7, 5.0) == pytest.approx(1.7)
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        one
+        for one in sorted(Path(benchmarks.__path__[0]).glob("*.py"))
+        if "__main__" in one.read_text(encoding="utf-8")
+    ],
+    ids=lambda script: script.stem,
+)
+def test_a_script_parses_its_command_line_before_it_does_anything(script: Path) -> None:
+    last = script.read_text(encoding="utf-8").split('if __name__ == "__main__":')[1]
+    parsers = ("tyro.cli", "parse_args", "parse_known_args", "without_options")
+    whole = script.read_text(encoding="utf-8")
+    assert any(f"{one}(" in last for one in parsers) or any(
+        f"{one}(" in whole for one in parsers[:3]
+    )
