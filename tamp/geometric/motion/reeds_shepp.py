@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -61,28 +61,26 @@ class _CurvePiece:
         side = round(turned * radius / KIND_STEP_M)
         return cls(x, y, yaw, radius, 1.0 if forwards else -1.0, side)
 
-    def poses(self, distance: Float[Array, " n"]) -> Float[Array, "n 3"]:
-        """Compute the poses (n, 3) at distances (n,) from its beginning."""
-        yaws = self.yaw + self.side * distance / self.radius
-        if self.side == 0:
-            ahead = self.direction * distance
-            x, y = self.x + ahead * math.cos(self.yaw), self.y + ahead * math.sin(self.yaw)
-        else:
-            bend = self.direction * self.radius / self.side
-            x = self.x + bend * (np.sin(yaws) - math.sin(self.yaw))
-            y = self.y - bend * (np.cos(yaws) - math.cos(self.yaw))
-        return np.column_stack([x, y, yaws])
-
-    def passes(self, distance: float, pose: Array) -> bool:
-        """Check whether it is at a pose after a distance, by the same formulae."""
+    def _along(self, distance: Any, sin: Any, cos: Any) -> tuple[Any, Any, Any]:
+        """Compute x, y and yaw after a distance, of numbers by math's functions, of arrays by
+        numpy's.
+        """
         yaw = self.yaw + self.side * distance / self.radius
         if self.side == 0:
             ahead = self.direction * distance
-            x, y = self.x + ahead * math.cos(self.yaw), self.y + ahead * math.sin(self.yaw)
-        else:
-            bend = self.direction * self.radius / self.side
-            x = self.x + bend * (math.sin(yaw) - math.sin(self.yaw))
-            y = self.y - bend * (math.cos(yaw) - math.cos(self.yaw))
+            return self.x + ahead * math.cos(self.yaw), self.y + ahead * math.sin(self.yaw), yaw
+        bend = self.direction * self.radius / self.side
+        x = self.x + bend * (sin(yaw) - math.sin(self.yaw))
+        y = self.y - bend * (cos(yaw) - math.cos(self.yaw))
+        return x, y, yaw
+
+    def poses(self, distance: Float[Array, " n"]) -> Float[Array, "n 3"]:
+        """Compute x, y (metres) and yaw (radians) at distances from its beginning, metres."""
+        return np.column_stack(self._along(distance, np.sin, np.cos))
+
+    def passes(self, distance: float, pose: Float[Array, " 3"]) -> bool:
+        """Check whether it is at a pose, x, y and yaw modulo a turn, after a distance, metres."""
+        x, y, yaw = self._along(distance, math.sin, math.cos)
         other_x, other_y, other_yaw = pose.tolist()
         turn = math.remainder(yaw - other_yaw, math.tau)
         return max(abs(x - other_x), abs(y - other_y), abs(turn)) < SAME_POSE
