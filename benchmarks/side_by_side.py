@@ -2,6 +2,7 @@
 
     python -m benchmarks.side_by_side [TASK ...] --repeats 5
     python -m benchmarks.side_by_side --folder TASKS --peers VENV      # NAME.domain.pddl with NAME.problem.pddl
+    python -m benchmarks.side_by_side --optimal                        # A* with landmark cuts on both sides
 
 The peers come from pinned wheels, into an environment of their own that is made where it is missing. Our time is that
 of reading, instantiating and searching, in a process whose kernels are loaded; of a peer's process the CPU time of its
@@ -38,18 +39,21 @@ SIZES = {
 }  # fmt: skip
 """Tasks that are made, and their sizes; the least of gripper tells what a peer's start-up takes."""
 
+OPTIMAL_SIZES = {"depot": 6, "rovers": 5, "blocks": 12, "logistics": 8, "gripper": 8, "satellite": 8}
+"""Those that are solved optimally; the first three take Fast Downward seconds, the fourth most of a minute."""
+
 OURS = """
 import json, sys, time
 from tamp.planner.pddl_only.problem import load_symbolic
 from tamp.planner.pddl_only.solve import solve_symbolic
 from tamp.symbolic.search.heuristics.loops import selection as kernels
 from tamp.symbolic.search.packed import compiled
-seconds, seed, *names = sys.argv[1:]
+seconds, seed, search, *names = sys.argv[1:]
 kernels.load()
 rows = []
 for domain, problem in [names[:2], names[2:]]:
     began = time.process_time()
-    found = solve_symbolic(load_symbolic(domain, problem), max_time=float(seconds))
+    found = solve_symbolic(load_symbolic(domain, problem), search=search, max_time=float(seconds))
     rows.append({"cpu_s": time.process_time() - began, "cost": found.cost if found.solved else None,
                  "expanded": found.expanded})
 print(json.dumps(rows[1]))
@@ -68,6 +72,7 @@ class Options:
         first: The seed of the tasks that are made.
         repeats: Pairs of each task.
         seconds: Budget of one run.
+        optimal: Plans of the least cost: A* with landmark cuts, ours and Fast Downward's.
     """
 
     tasks: tyro.conf.Positional[tuple[str, ...]] = ()
@@ -77,6 +82,7 @@ class Options:
     first: int = 0
     repeats: int = 3
     seconds: float = 60.0
+    optimal: bool = False
 
 
 def conditions(size: int) -> Task:
@@ -116,12 +122,15 @@ def spent(words: list[str], seconds: float, folder: str) -> tuple[float, str]:
 
 
 def lama(options: Options, path: Path) -> dict[str, object]:
-    """Run Fast Downward's lama-first; the cost is that of its plan."""
+    """Run Fast Downward's lama-first, or its A* with landmark cuts; the cost is that of its plan."""
     script = next(options.peers.glob("lib/python*/site-packages/up_fast_downward/downward/fast-downward.py"))
     limit = f"{int(options.seconds)}s"
-    words = [str(options.peers / "bin" / "python"), str(script), "--overall-time-limit", limit, "--alias", "lama-first"]
+    words = [str(options.peers / "bin" / "python"), str(script), "--overall-time-limit", limit]
+    words += (
+        [*files(path), "--search", "astar(lmcut())"] if options.optimal else ["--alias", "lama-first", *files(path)]
+    )
     with tempfile.TemporaryDirectory() as folder:
-        seconds, said = spent([*words, *files(path)], options.seconds, folder)
+        seconds, said = spent(words, options.seconds, folder)
     return {"cpu_s": seconds, "cost": number("Plan cost", said), "expanded": number("Expanded", said)}
 
 
@@ -145,7 +154,8 @@ def number(word: str, said: str) -> float | None:
 
 def ours(options: Options, path: Path, least: Path) -> dict[str, object]:
     """Plan in a process that has planned the least task before."""
-    words = [sys.executable, "-c", OURS, str(options.seconds), "0", *files(least), *files(path)]
+    search = "astar" if options.optimal else "greedy"
+    words = [sys.executable, "-c", OURS, str(options.seconds), "0", search, *files(least), *files(path)]
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=environment)
     return json.loads(done.stdout.splitlines()[-1])
@@ -178,7 +188,8 @@ def ratio(ours: list[float], theirs: list[float]) -> float:
 
 def compared(options: Options, path: Path, least: Path) -> dict[str, object]:
     """Run the pairs of a task: the row of the table."""
-    peers = {"lama": lama, **({"pyperplan": pyperplan} if options.pyperplan else {})}
+    peers = {"lmcut" if options.optimal else "lama": lama, **({"pyperplan": pyperplan} if options.pyperplan else {})}
+    mine = "ours, optimal" if options.optimal else "ours"
     rows: dict[str, list[dict[str, object]]] = {"ours": [], **{name: [] for name in peers}}
     for turn in range(options.repeats):
         runs = {"ours": lambda: ours(options, path, least)}
@@ -186,19 +197,24 @@ def compared(options: Options, path: Path, least: Path) -> dict[str, object]:
             runs[name] = lambda run=run: {"start_s": run(options, least)["cpu_s"], **run(options, path)}
         for name in sorted(runs, reverse=bool(turn % 2)):
             rows[name].append(runs[name]())
-            config = {"task": path.name, "planner": name, "time_s": options.seconds, "pins": PINS}
+            config = {
+                "task": path.name,
+                "planner": mine if name == "ours" else name,
+                "time_s": options.seconds,
+                "pins": PINS,
+            }
             record("side_by_side.jsonl", seed=0, config=config, turn=turn, **rows[name][-1])
 
-    mine = [spent_of(row) for row in rows["ours"]]
+    spent_here = [spent_of(row) for row in rows["ours"]]
     cost = cost_of(rows["ours"][0])
-    line: dict[str, object] = {"task": path.name, "ours [s]": median(mine), "cost": cost}
+    line: dict[str, object] = {"task": path.name, "ours [s]": median(spent_here), "cost": cost}
     for name in peers:
         theirs = [spent_of(row) for row in rows[name]]
         dear = cost_of(rows[name][0])
         line |= {
             f"{name} [s]": median(theirs),
             f"{name} cost": dear,
-            f"{name} ratio": ratio(mine, theirs),
+            f"{name} ratio": ratio(spent_here, theirs),
             f"{name} cost ratio": ratio([cost], [dear]),
         }
     return line
@@ -210,7 +226,8 @@ def main(options: Options) -> None:
     with tempfile.TemporaryDirectory() as folder:
         least = made(Path(folder), "gripper", 1)
         if options.folder is None:
-            paths = [made(Path(folder), name, SIZES[name], options.first) for name in options.tasks or SIZES]
+            sizes = OPTIMAL_SIZES if options.optimal else SIZES
+            paths = [made(Path(folder), name, sizes[name], options.first) for name in options.tasks or sizes]
         else:
             ending = ".problem.pddl"
             found = sorted(path for path in options.folder.glob(f"*{ending}"))
@@ -218,11 +235,11 @@ def main(options: Options) -> None:
             paths = [path for path in paths if not options.tasks or path.name in options.tasks]
         lines = [compared(options, path, least) for path in paths]
     table(lines, "Side by side: CPU seconds without start-up, medians; ratios of pairs")
-    ratios = [float(str(line["lama ratio"])) for line in lines]
-    costs = [
-        float(str(line["lama cost ratio"])) for line in lines if line["lama cost ratio"] == line["lama cost ratio"]
-    ]
-    print(f"against lama-first: time {median(ratios):.2f} (most {max(ratios):.2f}), cost {median(costs or [0]):.2f}")
+    peer = "lmcut" if options.optimal else "lama"
+    ratios = [float(str(line[f"{peer} ratio"])) for line in lines]
+    costs = [cost for line in lines if (cost := float(str(line[f"{peer} cost ratio"]))) == cost]
+    time = f"time {median(ratios):.2f} (most {max(ratios):.2f})"
+    print(f"against Fast Downward's {peer}: {time}, cost {median(costs or [0]):.2f}")
 
 
 if __name__ == "__main__":

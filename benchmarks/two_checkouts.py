@@ -28,8 +28,13 @@ from benchmarks.scale_scenes import scene
 
 PROBLEMS = (
     "one_object", "two_objects", "four_objects", "eight_objects", "cluttered", "shelves", "blocked", "swap", "packed",
-    "drawers", "twelve_objects", "twenty_objects",
+    "drawers", "twelve_objects", "twenty_objects", "pack", "tray", "stack", "parcels", "bench_one_object",
+    "bench_four_objects", "two_arms_tables", "two_arms_handover", "two_arms_cupboard",
 )  # fmt: skip
+"""The shipped ones that have plans and need no learned relation."""
+
+LEARNED = ("set_table", "stack_learned", "pack_learned")
+"""Shipped ones with learned relations, which the registry of `grounding` brings."""
 
 OF_THE_RUN = ("timing", "inputs", "versions", "statistics", "effort", "options")
 """Entries of a plan file that differ between two runs that made the same plan."""
@@ -43,7 +48,11 @@ tamp.solve(tamp.load_problem("one_object"), max_time=limit, seed=0)  # loads ker
 if sys.argv[5] == "cpu":
     import tamp.system.deadline
     tamp.system.deadline.counted = time.process_time
-problem = tamp.load_problem(name)
+registry = {}
+if name in sys.argv[6].split():
+    from grounding.registry import GROUNDINGS
+    registry = {"registry": GROUNDINGS}
+problem = tamp.load_problem(name, **registry)
 began = time.process_time()
 solution = tamp.solve(problem, max_time=limit, seed=seed)
 spent = time.process_time() - began
@@ -62,7 +71,7 @@ def run(checkout: Path, problem: str, seed: int, seconds: float, clock: str = "w
             made = Path(folder) / f"scale_{problem}.yaml"
             made.write_text(scene(int(problem), MADE[problem]), encoding="utf-8")
             problem = str(made)
-        words = [sys.executable, "-c", RUN, problem, str(seed), str(seconds), str(out), clock]
+        words = [sys.executable, "-c", RUN, problem, str(seed), str(seconds), str(out), clock, " ".join(LEARNED)]
         environment = {**os.environ, "PYTHONPATH": str(checkout)}
         done = subprocess.run(words, cwd=checkout, env=environment, capture_output=True, text=True, check=True)
         row = json.loads(done.stdout.splitlines()[-1])
@@ -71,6 +80,15 @@ def run(checkout: Path, problem: str, seed: int, seconds: float, clock: str = "w
 
         row["plan"] = plan_hash(out) if out.is_file() else None
     return row
+
+
+def shipped_in(other: Path) -> list[str]:
+    """Return the shipped problems to compare, less those that the other checkout does not have, which are named."""
+    every = (*PROBLEMS, *LEARNED)
+    newer = [name for name in every if not (other / "problems" / f"{name}.yaml").is_file()]
+    if newer:
+        print(f"Not in {other}:", *newer, flush=True)
+    return [name for name in every if name not in newer]
 
 
 def plan_hash(file: Path) -> str:
@@ -94,7 +112,7 @@ def main() -> None:
 
     clock = "cpu" if arguments.cpu else "wall"
     here, rows, ratios = Path(__file__).resolve().parent.parent, [], []
-    for problem in arguments.problems or PROBLEMS:
+    for problem in arguments.problems or shipped_in(arguments.other):
         pairs = []
         for seed in range(arguments.first, arguments.first + arguments.seeds):
             sides = (here, arguments.other) if seed % 2 == 0 else (arguments.other, here)

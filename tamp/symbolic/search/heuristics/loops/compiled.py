@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from tamp.symbolic.search.heuristics.loops import kernels, rows
+from tamp.symbolic.search.heuristics.loops import kernels, landmark_cuts, rows
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 from tamp.system.compilation import njit
 
@@ -43,7 +43,13 @@ def _reals(values: Sequence[float]) -> Any:
     return np.array(values, dtype=np.float64)
 
 
-_names: dict[str, Any] = {**vars(rows), **vars(kernels), "full": _full, "count_up": _count_up}
+_names: dict[str, Any] = {
+    **vars(rows),
+    **vars(kernels),
+    **vars(landmark_cuts),
+    "full": _full,
+    "count_up": _count_up,
+}
 
 
 def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..., Any]:
@@ -58,7 +64,13 @@ def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..
     return result
 
 
-for _inner in (kernels._before, kernels._push, kernels._pop, kernels._levels, kernels._find_cut):
+for _inner in (kernels._before, kernels._push, kernels._pop):
+    _compile(_inner)
+
+for _inner in (
+    landmark_cuts._put, landmark_cuts._dearest, landmark_cuts._explore, landmark_cuts._fill_zone,
+    landmark_cuts._find_cut, landmark_cuts._make_cheaper,
+):  # fmt: skip
     _compile(_inner)
 
 COMPILED = Kernels(
@@ -69,7 +81,7 @@ COMPILED = Kernels(
         kernels.relaxed_plan, types.Tuple((_N, _I))(_F, _I, _ROWS, _ROWS, _F, _I, _C, _I, _C)
     ),
     landmark_cut=_compile(
-        kernels.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)
+        landmark_cuts.landmark_cut, _N(_ROWS, _ROWS, _ROWS, _ROWS, _F, _I, _I, _ROWS, _C)
     ),
     transposed=_compile(rows.transposed, _ROWS(_ROWS, _C)),
     appended=_compile(rows.appended, _ROWS(_ROWS, _I, _I, _C)),

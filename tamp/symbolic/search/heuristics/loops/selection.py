@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 
 from tamp.symbolic.search.compilation_threshold import CompilationThreshold
-from tamp.symbolic.search.heuristics.loops import kernels, rows
+from tamp.symbolic.search.heuristics.loops import kernels, landmark_cuts, rows
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
 
 LOAD_THRESHOLD = 2_000_000
@@ -24,7 +24,8 @@ COMPILE_THRESHOLD = 10_000_000
 """
 
 CACHED = (
-    (kernels, ("explore", "relaxed_plan", "landmark_cut")),
+    (kernels, ("explore", "relaxed_plan")),
+    (landmark_cuts, ("landmark_cut",)),
     (rows, ("transposed", "appended", "incremented")),
 )
 """The functions that numba keeps on disk, by module."""
@@ -33,7 +34,7 @@ CACHED = (
 PLAIN = Kernels(
     explore=kernels.explore,
     relaxed_plan=kernels.relaxed_plan,
-    landmark_cut=kernels.landmark_cut,
+    landmark_cut=landmark_cuts.landmark_cut,
     transposed=rows.transposed,
     appended=rows.appended,
     incremented=rows.incremented,
