@@ -69,9 +69,10 @@ class Cluster:
         return ready, [seed for seed in under_way if seed not in self.came_out]
 
     def get(self, seed: int, **_: object) -> object:
-        if isinstance(self.came_out[seed], Exception):
-            raise self.came_out[seed]
-        return self.came_out[seed]
+        found = self.came_out[seed]
+        if isinstance(found, Exception):
+            raise found
+        return found
 
     def cancel(self, seed: int, **_: object) -> None:
         self.cancelled.append(seed)

@@ -184,7 +184,7 @@ def test_a_scene_that_is_seen_is_asked_about(folder: Path) -> None:
     assert not any(fact[0] == "stood" for fact in later.stream_task.task.initial)
 
 
-def named(planned: dict[str, str], said: dict[str, str], **objects: object) -> dict[str, object]:
+def named(planned: dict[str, str], said: dict[str, str], **objects: object) -> dict[str, Any]:
     """The classifiers of a plan with these samplers, when these are said on the command line."""
     stored: Any = SimpleNamespace(document={"options": {"samplers": planned}})
     registry: Any = {"upright": {"mine": lambda: Never(None), "proposes": object}}

@@ -1,8 +1,9 @@
-"""Scenes of bodies made by hand, for the engines."""
+"""Scenes of bodies made by hand, for the engines, and worlds without one."""
 
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 
@@ -36,3 +37,8 @@ def body(
     name: str, *parts: Part, at: tuple[float, float, float] = (0, 0, 0), movable: bool = True
 ) -> Body:
     return Body(name, parts, Pose(at), movable)
+
+
+def without_an_engine(kind: type) -> Any:
+    """A class of worlds that can be made although what only an engine can answer is missing."""
+    return type(kind.__name__, (kind,), dict.fromkeys(kind.__abstractmethods__))

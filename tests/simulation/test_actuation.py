@@ -18,7 +18,7 @@ from tamp.simulation.actuation import (
     MotorSimulation,
     contact_pair,
 )
-from tests.simulation.scenes import scene_of
+from tests.simulation.scenes import scene_of, without_an_engine
 
 LINKS = frozenset({"base", "finger", "hand"})
 
@@ -40,7 +40,7 @@ def test_a_body_may_be_named_as_a_link(
     assert contact_pair(*names, of_robot, LINKS) == pair
 
 
-class Motors(MotorSimulation):
+class Counting(MotorSimulation):
     """One that counts its steps, with as many arms as its robot."""
 
     def __init__(self, robot: Robot, scene: Scene) -> None:
@@ -51,28 +51,28 @@ class Motors(MotorSimulation):
         self.steps += 1
 
 
-Motors.__abstractmethods__ = frozenset()  # an engine is what the rest is asked of
+MOTORS = without_an_engine(Counting)
 
 TWO = ROBOTS["two_pandas"]()
 FIRST, SECOND = (arm.arm for arm in TWO.arms)
 
 
 @pytest.fixture
-def motors() -> Motors:
+def motors() -> Counting:
     start = RobotStart("two_pandas", (1.0, 2.0, 0.5), tuple(0.1 * n for n in range(7)))
-    return Motors(TWO, replace(scene_of(), robot=start))
+    return MOTORS(TWO, replace(scene_of(), robot=start))
 
 
-def test_it_sets_out_at_the_start_with_open_hands(motors: Motors) -> None:
+def test_it_sets_out_at_the_start_with_open_hands(motors: Counting) -> None:
     """The first arm where the scene has it, the others at home."""
     expected = [1.0, 2.0, 0.5, *(0.1 * n for n in range(7)), *TWO.arms[1].home]
     assert motors.conf == pytest.approx(expected)
     assert [hand.opening for hand in motors.hands] == [arm.opening for arm in TWO.arms]
-    at_home = Motors(TWO, scene_of())
+    at_home = MOTORS(TWO, scene_of())
     assert at_home.conf[3:10] == pytest.approx(TWO.home)
 
 
-def test_what_is_of_one_hand_is_of_the_arm_in_use(motors: Motors) -> None:
+def test_what_is_of_one_hand_is_of_the_arm_in_use(motors: Counting) -> None:
     assert motors.joints == slice(3, 10)
     motors.use(SECOND)
     assert motors.joints == slice(10, 17)
@@ -88,7 +88,7 @@ def test_what_is_of_one_hand_is_of_the_arm_in_use(motors: Motors) -> None:
 
 
 def test_what_another_hand_holds_out_counts_as_between_the_fingers_from_farther(
-    motors: Motors,
+    motors: Counting,
 ) -> None:
     motors.use(SECOND)
     motors.hand.bound = "cup"
@@ -98,6 +98,6 @@ def test_what_another_hand_holds_out_counts_as_between_the_fingers_from_farther(
     assert motors.reach_of("plate") == BETWEEN_FINGERS_M
 
 
-def test_waiting_is_standing_still_for_so_many_commands(motors: Motors) -> None:
+def test_waiting_is_standing_still_for_so_many_commands(motors: Counting) -> None:
     motors.wait(0.5)
     assert motors.steps == COMMANDS_PER_SECOND // 2

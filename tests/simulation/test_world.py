@@ -14,6 +14,7 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
+from tests.simulation.scenes import without_an_engine
 
 
 def piece(owner: str, x: float) -> Solid:
@@ -48,25 +49,25 @@ class Line(World):
         return gap if gap <= reach else math.inf
 
 
-Line.__abstractmethods__ = frozenset()  # the rest is the engines' own
+LINE = without_an_engine(Line)
 
 
 def test_a_row_is_split_over_the_arms() -> None:
     robot = ROBOTS["two_pandas"]()
-    world = Line(robot)
+    world = LINE(robot)
     row = np.arange(19.0)  # x, y, yaw; seven joints and an opening; the same of the second arm
     world.set_state(row)
     assert world.told == [
         (0, [0.0, 1.0, 2.0], [float(n) for n in range(3, 10)], 10.0),
         (1, [0.0, 1.0, 2.0], [float(n) for n in range(11, 18)], 18.0),
     ]
-    alone = Line()
+    alone = LINE()
     alone.set_state(row)
     assert alone.told == []
 
 
 def test_links_are_told_by_name_in_their_order() -> None:
-    world = Line()
+    world = LINE()
     world.links = {"base": piece("base", 0.0), "hand": piece("hand", 0.0)}
     poses = world.link_poses()
     assert poses["base"] == pytest.approx(
@@ -78,13 +79,13 @@ def test_links_are_told_by_name_in_their_order() -> None:
 
 
 def test_the_nearest_two_pieces_are_the_bodies_distance() -> None:
-    world = Line(a=(0.0, 1.0), b=(1.5, 1.01), empty=())
+    world = LINE(a=(0.0, 1.0), b=(1.5, 1.01), empty=())
     assert world.body_distance("a", "b") == pytest.approx(0.01)
     assert world.body_distance("a", "b", reach=0.001) == math.inf
     assert world.body_distance("a", "empty") == math.inf
 
 
 def test_a_world_is_closed_at_the_end_of_its_block() -> None:
-    with Line() as world:
+    with LINE() as world:
         assert world.told == []
     assert world.told == ["closed"]
