@@ -85,7 +85,8 @@ def test_fingers_that_nobody_named_and_that_cannot_close_give_way_to_ours(tmp_pa
 
 def test_a_cup_takes_the_place_of_fingers_that_were_found(tmp_path: Path) -> None:
     text = sliding(*SLIDES["both along y"])
-    assert wanted(tmp_path, text, suction=0.02).fingers is None
+    cup = wanted(tmp_path, text, suction=0.02)
+    assert cup.fingers is None and cup.remarks == ()  # and not for that they would not close
     named = ("right_finger_joint", "left_finger_joint")
     assert wanted(tmp_path, text, gripper=named).fingers == named
 

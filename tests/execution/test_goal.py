@@ -16,8 +16,10 @@ from tamp.execution.observation import ObservedScene
 from tamp.execution.report import GoalFact
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Scene
-from tamp.symbolic.pddl.parser import parse_goal
-from tests.execution.cup import DOMAIN, PICK, SCENE
+from tamp.plan.read import Hold, Value
+from tamp.symbolic.pddl.parser import parse_domain, parse_goal
+from tests.execution.cup import DOMAIN, GRASP, PICK, SCENE
+from tests.plan.making import plan_of
 
 ON = ("on", "cup", "table")
 SEEN = ObservedScene(SCENE, frozenset({ON}), {("inside", "cup", "crate_inside"): "it is 2 m away"})
@@ -73,6 +75,37 @@ def test_what_a_hand_holds_is_seen_and_not_believed(expected: Expected) -> None:
     assert [one.holds for one in held] == [True, False]
     lost = asked(expected, goal, hands=EMPTY)
     assert [one.holds for one in lost] == [False, True]
+
+
+TWO = parse_domain("""(define (domain two) (:requirements :typing)
+  (:types movable grasp arm - object)
+  (:predicates (hand-empty ?a - arm) (holding ?a - arm ?o - movable ?g - grasp)))""")
+
+
+@pytest.mark.parametrize(
+    ("held", "holds"),
+    [
+        (
+            "Cup",
+            {"(holding left cup g)": True, "(hand-empty left)": False, "(hand-empty right)": True},
+        ),
+        (
+            None,
+            {"(holding left cup g)": False, "(hand-empty left)": True, "(hand-empty right)": True},
+        ),
+    ],
+)
+def test_of_several_arms_each_has_a_hand_of_its_own(
+    held: str | None, holds: dict[str, bool]
+) -> None:
+    grasp = Value("grasp", Hold("cup", GRASP, 0.05))
+    initial = [("holding", "left", "cup", "g"), ("hand-empty", "right")]
+    objects = {"cup": ("movable",), "left": ("arm",), "right": ("arm",)}
+    made = replace(plan_of(values={"g": grasp}, initial=initial), objects=objects)
+    two = Expected(made, TWO, SCENE)
+    wanted = parse_goal(f"(and {' '.join(holds)})", TWO, two.semantics.objects)
+    found = judged(wanted, two, SEEN, {"left": held, "right": None}, {})
+    assert {one.fact: one.holds for one in found} == holds
 
 
 def test_why_a_relation_does_not_hold(expected: Expected) -> None:
