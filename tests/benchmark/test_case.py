@@ -2,31 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import os
-import pickle
 import re
 from pathlib import Path
 
 import pytest
 
 from tamp.benchmark.case import cases, labelled, named, relations
-from tamp.benchmark.fig8 import FIG8, chosen
-from tamp.benchmark.line import read_line
-from tamp.benchmark.run_case import run_case
-from tamp.benchmark.table import report
 from tamp.errors import InputError
-from tamp.geometric.samplers.placements import SurfacePlacements
-
-
-def without_weights() -> SurfacePlacements:
-    raise InputError("no such weight file")
-
-
-KNOWN = {
-    "on": {"surface": SurfacePlacements, "flow": SurfacePlacements, "mlp-bb": without_weights},
-    "inside": {"surface": SurfacePlacements, "flow": without_weights},
-}
+from tests.benchmark.samplers import KNOWN, MINE
 
 
 def test_all_samplers_get_the_same_seeds_and_an_early_look_is_fair() -> None:
@@ -85,22 +69,6 @@ def test_a_problem_has_one_name_from_everywhere(
         named("pakced")
 
 
-def test_what_is_not_shipped_is_skipped_by_name() -> None:
-    able, skipped = chosen(FIG8, KNOWN)
-    assert able == {"surface": {"on": "surface", "inside": "surface"}, "flow": {"on": "flow"}}
-    assert len(able) + len(skipped) == 12
-    assert "no such sampler" in skipped["gnn-pc"]
-    assert "not shipped" in skipped["mlp-bb"]
-
-
-MINE = """
-class Middle:
-    def propose(self, scene, arguments, count, rng):
-        return []
-grounding = Middle()
-"""
-
-
 def test_a_python_file_is_named_with_its_hash_and_sent_along(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -135,21 +103,3 @@ def test_a_python_file_that_does_not_serve(text: str, said: str, tmp_path: Path)
     (tmp_path / "mine.py").write_text(text)
     with pytest.raises(InputError, match=said):
         relations(f"on={tmp_path / 'mine.py'}", KNOWN)
-
-
-def test_a_run_with_a_python_file_needs_no_file(tmp_path: Path) -> None:
-    """As on another machine of a cluster; what its sampler does wrong stands in the line and in the report."""
-    file = tmp_path / "mine.py"
-    file.write_text(MINE.replace("return []", "raise ValueError('mine')"))
-    served = relations(f"on={file}", KNOWN)
-    label, sources = labelled(f"on={file}", served)
-    (case,) = cases(["one_object"], {label: served}, [0], 30.0, sources=sources)
-    file.unlink()
-    line = run_case(pickle.loads(pickle.dumps(case)), dict)
-    assert line["outcome"] == "SOLVED" and line["verified"]
-    assert line["config"]["sampler"] == label
-    assert line["config"]["samplers"] == {"on": str(file)}
-    assert read_line(json.dumps(line).encode(), file, 1) == json.loads(json.dumps(line))
-    shown = report([line])
-    assert "Samplers that were sidelined:\n1 x on=" in shown
-    assert "ValueError: mine" in shown

@@ -1,34 +1,14 @@
-"""The arithmetic of the tables, and that they and the pictures show it."""
+"""The arithmetic of the tables, and that they show it."""
 
 from __future__ import annotations
 
 import math
-import sys
-from pathlib import Path
 
 import pytest
 
-from tamp.benchmark.picture import draw
 from tamp.benchmark.summary import percentile, summaries, wilson
 from tamp.benchmark.table import report
-from tamp.errors import InputError
-from tests.benchmark.toys import TIMEOUT, line, some
-
-PARTS = {"symbolic": 1.0, "motion": 3.0}
-
-
-def results() -> list[dict]:
-    """Default solves all four seeds in 1, 2, 3, 4 s; uniform two of them in 10 and 10 s, and one plan is refused."""
-    default, uniform = some(4), some(4, ("uniform",))
-    return [
-        *(
-            line(case, 1.0 + case.seed, parts_s=PARTS, cpu_s=0.5, commit="abc", load=1.0)
-            for case in default
-        ),
-        *(line(case, 10.0, parts_s=PARTS, load=2.5) for case in uniform[:2]),
-        line(uniform[2], 5.0, verified=False),
-        line(uniform[3], 30.1, **TIMEOUT),
-    ]
+from tests.benchmark.results import PARTS, results
 
 
 def test_wilson_interval_is_the_published_one() -> None:
@@ -65,21 +45,3 @@ def test_the_tables_say_it() -> None:
     assert "3.000 (75 %)" in text
     assert "8 runs of 30 s, adaptive" in text
     assert "Commit abc" in text and "load 1.0-2.5" in text
-
-
-def test_the_pictures_are_drawn_from_any_results(tmp_path: Path) -> None:
-    unsolved = line(some(1, ("never",))[0], 30.0, **TIMEOUT)
-    written = draw([*results(), unsolved], tmp_path / "deep")
-    assert [path.name for path in written] == ["success.png", "ecdf.png", "cactus.png", "parts.png"]
-    assert all(path.read_bytes().startswith(b"\x89PNG") for path in written)
-
-
-def test_pictures_without_matplotlib_or_a_folder_are_an_error(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    (tmp_path / "file").touch()
-    with pytest.raises(InputError, match="cannot be written"):
-        draw(results(), tmp_path / "file")
-    monkeypatch.setitem(sys.modules, "matplotlib", None)
-    with pytest.raises(InputError, match=r"pip install 'tamp-planner\[bench\]'"):
-        draw(results(), tmp_path)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tamp.execution.expected import Expected
 from tamp.plan.open import PlanBundle, open_plan
+from tamp.plan.read import Hold, Value
 from tamp.plan.write import write_plan
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
+from tests.execution.cup import DOMAIN, GOAL, GRASP, SCENE, START
+from tests.plan.making import plan_of
 
 PROBLEM = """\
 name: short_way
@@ -35,3 +40,19 @@ def plan_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def stored(plan_file: Path) -> PlanBundle:
     return open_plan(plan_file)
+
+
+@pytest.fixture
+def expected() -> Expected:
+    """A cup that a plan takes from the table into the crate."""
+    plan = plan_of(
+        values={
+            "p0": Value("pose", START),
+            "p1": Value("pose", GOAL),
+            "g": Value("grasp", Hold("cup", GRASP, 0.05)),
+        },
+        initial=[("at-pose", "cup", "p0"), ("hand-empty",), ("supported", "cup", "p0", "table")],
+        certified=[("contained", "cup", "p1", "crate_inside")],
+    )
+    objects = {"cup": ("movable",), "table": ("surface",), "crate_inside": ("container",)}
+    return Expected(replace(plan, objects=objects), DOMAIN, SCENE)

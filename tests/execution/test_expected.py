@@ -7,51 +7,8 @@ import pytest
 
 from tamp.execution.expected import Expected
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Box
-from tamp.plan.read import Hold, TimedAction, Value
-from tamp.symbolic.pddl.parser import parse_domain
-from tests.geometric.making import body, crate, scene, table
-from tests.plan.making import plan_of
-
-DOMAIN = parse_domain("""(define (domain d) (:requirements :typing :derived-predicates)
-  (:types movable surface container pose grasp - object)
-  (:predicates (at-pose ?o - movable ?p - pose) (holding ?o - movable ?g - grasp) (hand-empty)
-    (supported ?o - movable ?p - pose ?s - surface) (contained ?o - movable ?p - pose ?c - container)
-    (on ?o - movable ?s - surface) (inside ?o - movable ?c - container))
-  (:derived (on ?o ?s) (exists (?p - pose) (and (supported ?o ?p ?s) (at-pose ?o ?p))))
-  (:derived (inside ?o ?c) (exists (?p - pose) (and (contained ?o ?p ?c) (at-pose ?o ?p))))
-  (:action pick :parameters (?o - movable ?p - pose ?g - grasp)
-    :effect (and (not (at-pose ?o ?p)) (holding ?o ?g) (not (hand-empty))))
-  (:action place :parameters (?o - movable ?p - pose ?g - grasp)
-    :effect (and (at-pose ?o ?p) (not (holding ?o ?g)) (hand-empty))))""")
-SCENE = scene(table(), crate(), body("Cup", Box((0.1, 0.1, 0.1)), (0.2, 0, 0.551)))
-START, GOAL, GRASP = (
-    Pose((0.2, 0, 0.551)).matrix,
-    Pose((2.0, 0, 0.071)).matrix,
-    Pose((0, 0, 0.1)).matrix,
-)
-
-
-@pytest.fixture
-def expected() -> Expected:
-    plan = plan_of(
-        values={
-            "p0": Value("pose", START),
-            "p1": Value("pose", GOAL),
-            "g": Value("grasp", Hold("cup", GRASP, 0.05)),
-        },
-        initial=[("at-pose", "cup", "p0"), ("hand-empty",), ("supported", "cup", "p0", "table")],
-        certified=[("contained", "cup", "p1", "crate_inside")],
-    )
-    objects = {"cup": ("movable",), "table": ("surface",), "crate_inside": ("container",)}
-    return Expected(type(plan)(**{**vars(plan), "objects": objects}), DOMAIN, SCENE)
-
-
-def act(name: str, *arguments: str) -> TimedAction:
-    return TimedAction(name, arguments, 0.0, 1.0, 1.0, ())
-
-
-PICK, PLACE = act("pick", "cup", "p0", "g"), act("place", "cup", "p1", "g")
+from tamp.plan.read import TimedAction
+from tests.execution.cup import GOAL, GRASP, PICK, PLACE, START, act
 
 
 def test_at_the_start_bodies_stand_where_the_plan_says(expected: Expected) -> None:

@@ -10,52 +10,10 @@ import numpy as np
 import pytest
 
 from tamp.export.formats import csv_text, json_text, ros_text
-from tamp.export.trajectory import BASE_JOINTS, rates, timed_actions
-from tamp.geometric.loading.robots import ROBOTS
+from tamp.export.trajectory import BASE_JOINTS, timed_actions
 from tamp.plan.read import Value
-from tests.plan.making import arm, base, close, let_go, plan_of
-
-ROBOT = ROBOTS["panda_mobile"]()
-ARM = tuple(joint.name for joint in ROBOT.joints)
-FINGERS = tuple(finger.name for finger in ROBOT.fingers)
-HOME = np.array(ROBOT.home)
-DOWN = HOME + np.array([0.1, 0, 0, 0, 0, 0, 0])
-
-PLAN = plan_of(
-    ("move", ("b1",), [base([0, 1, 2], [[0, 0, 0], [0.5, 0, 0.1], [1, 0, 0.2]])]),
-    (
-        "pick",
-        ("cup",),
-        [arm([0, 1], [HOME, DOWN]), close("cup", 0.05), arm([0, 1], [DOWN, HOME], 0.05, "cup")],
-    ),
-    ("place", ("cup",), [let_go("cup", 0.05)]),
-)
-ACTIONS = timed_actions(PLAN, ROBOT)
-
-
-def test_stretches_follow_each_other_from_the_plans_start() -> None:
-    starts = [stretch.times[0] for action in ACTIONS for stretch in action.stretches]
-    ends = [stretch.times[-1] for action in ACTIONS for stretch in action.stretches]
-    assert starts == pytest.approx([0.0, 2.0, 3.0, 3.5, 4.5])
-    assert ends == pytest.approx([2.0, 3.0, 3.5, 4.5, 5.0]) and ends[-1] == PLAN.duration
-
-
-def test_each_finger_stands_at_half_the_opening() -> None:
-    gripper = ACTIONS[1].stretches[1]
-    assert (gripper.part, gripper.joints, gripper.attach) == ("gripper", FINGERS, "cup")
-    assert gripper.positions == pytest.approx(np.array([[0.04, 0.04], [0.025, 0.025]]))
-    assert ACTIONS[2].stretches[0].detach == "cup"
-
-
-def test_rates_lie_between_the_slopes_beside_them_and_rest_at_the_ends() -> None:
-    times = np.array([0.0, 1.0, 1.5, 4.0])
-    positions = np.array([[0.0], [2.0], [1.0], [1.0]])
-    found = rates(times, positions)[:, 0]
-    assert found[0] == found[-1] == 0.0
-    # Of slopes 2 over one second and -2 over half a one, the nearer counts double: (2 * 0.5 - 2 * 1) / 1.5.
-    assert found[1] == pytest.approx(-2 / 3)
-    assert found[2] == pytest.approx((-2.0 * 2.5 + 0.0 * 0.5) / 3.0)
-    assert rates(times[:2], positions[:2]).tolist() == [[0.0], [0.0]]
+from tests.export.known import ACTIONS, ARM, DOWN, FINGERS, HOME, PLAN, ROBOT
+from tests.plan.making import arm, base, plan_of
 
 
 def test_json_tells_what_is_grasped_only_where_it_is() -> None:

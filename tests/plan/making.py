@@ -1,8 +1,10 @@
-"""Plans made by hand from segments, without a file."""
+"""Plans made by hand from segments, without a file, and the least that a plan file may say."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -68,3 +70,22 @@ def plan_of(
         file=None, sources=(), robot="panda_mobile", objects={}, initial=tuple(initial), goal="(and)",
         values=values or {}, actions=tuple(timed), certified=tuple(certified), cost=float(len(timed)), duration=clock,
     )  # fmt: skip
+
+
+def moved(plan: Path, folder: Path) -> tuple[Path, Path]:
+    """The plan as if made from a problem file that the test may change."""
+    document = json.loads(plan.read_text(encoding="utf-8"))
+    problem = folder / "mine.yaml"
+    problem.write_bytes(Path(document["inputs"]["problem"]["path"]).read_bytes())
+    document["inputs"]["problem"]["path"] = str(problem)
+    file = folder / "moved.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    return file, problem
+
+
+SHA = "0" * 64
+DOCUMENT = {
+    "format": "tamp-plan", "version": 1, "inputs": {"problem": {"path": "p.yaml", "sha256": SHA},
+    "domain": {"path": "d.pddl", "sha256": SHA}}, "robot": "panda_mobile", "objects": {"cup": ["movable"]},
+    "initial": [], "goal": "(and)", "values": {}, "actions": [], "certified": [], "cost": 0.0, "duration": 0.0,
+}  # fmt: skip

@@ -13,7 +13,7 @@ from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.pose import Pose, pose_difference
 from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
-from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation, contact_pair
+from tamp.simulation.actuation import COMMANDS_PER_SECOND, MotorSimulation
 from tamp.simulation.engines import open_actuated
 from tests.needs import INSTALLED
 
@@ -132,23 +132,3 @@ def test_a_hand_that_has_turned_lets_go_at_once(off_centre: MotorSimulation) -> 
     moved = off_centre.pose("bar")[:3, 3] - before
     assert np.linalg.norm(moved[:2]) < 5e-4  # no finger draws it along
     assert moved[2] < -0.15
-
-
-LINKS = frozenset({"base", "finger", "hand"})
-
-
-@pytest.mark.parametrize(
-    ("names", "of_robot", "pair"),
-    [
-        (("cup", "finger"), (False, True), ("finger", "cup")),
-        (("finger", "base"), (True, False), ("finger", "base")),  # a body named as a link
-        (("base", "finger"), (False, True), ("finger", "base")),
-        (("plate", "cup"), (False, False), ("cup", "plate")),
-        (("base", "cup"), (False, False), ("cup", "base")),
-        (("cup", "base"), (False, False), ("cup", "base")),
-    ],
-)
-def test_a_body_may_be_named_as_a_link(
-    names: tuple[str, str], of_robot: tuple[bool, bool], pair: tuple[str, str]
-) -> None:
-    assert contact_pair(*names, of_robot, LINKS) == pair

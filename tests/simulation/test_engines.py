@@ -22,15 +22,10 @@ from tamp.simulation.engines import (
     open_actuated,
     open_world,
 )
-from tamp.simulation.shapes import centre_of_mass, inertia
 from tests.needs import INSTALLED
+from tests.simulation.scenes import scene_of
 
-START = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
 ROOM = Room((-3, 3), (-3, 3))
-
-
-def scene_of(*bodies: Body) -> Scene:
-    return Scene("some", {body.name: body for body in bodies}, START, ROOM)
 
 
 def test_pybullet_is_the_default_where_it_is_installed() -> None:
@@ -132,33 +127,6 @@ def test_a_distance_past_the_reach_is_infinite(name: str) -> None:
         assert world.body_distance("a", "b", 0.04) == pytest.approx(0.03, abs=3e-5)
         world.place("b", Pose((0.0999, 0.0, 0.0)).matrix)
         assert world.body_distance("a", "b", 0.0) == pytest.approx(-1e-4, abs=3e-5)
-
-
-def test_inertia_of_a_hull_is_that_of_the_same_box() -> None:
-    size = np.array([0.1, 0.2, 0.3])
-    corners = (
-        np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * size
-    )
-    squares = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = np.array([(a, b, c) for a, b, c, _ in squares] + [(a, c, d) for a, _, c, d in squares])
-    expected = 2.0 / 12 * np.diag([0.2**2 + 0.3**2, 0.1**2 + 0.3**2, 0.1**2 + 0.2**2])
-    at = Pose((0.5, -0.2, 0.1))
-    assert inertia((Part(Box((0.1, 0.2, 0.3)), at),), 2.0) == pytest.approx(expected)
-    assert inertia((Part(Hull(corners, faces), at),), 2.0) == pytest.approx(expected)
-
-
-def test_inertia_of_two_parts_is_that_of_the_whole() -> None:
-    turned = Pose.from_xyz_rpy((0.3, 0.1, -0.2), (0.4, -0.7, 1.1))
-    halves = [
-        Part(Cylinder(0.03, 0.05), turned @ Pose((0.0, 0.0, side * 0.025))) for side in (-1, 1)
-    ]
-    whole = (Part(Cylinder(0.03, 0.1), turned),)
-    assert inertia(halves, 1.5) == pytest.approx(inertia(whole, 1.5))
-    assert centre_of_mass(halves) == pytest.approx(centre_of_mass(whole))
-    across, along = np.linalg.eigvalsh(inertia(whole, 1.5))[[1, 0]]
-    assert along == pytest.approx(1.5 * 0.03**2 / 2) and across == pytest.approx(
-        1.5 * (3 * 0.03**2 + 0.1**2) / 12
-    )
 
 
 @pytest.mark.parametrize("name", INSTALLED)

@@ -13,33 +13,16 @@ import pytest
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import (
-    Body,
     Box,
     Cylinder,
     Hull,
     Part,
-    RobotStart,
-    Room,
-    Scene,
     Sphere,
 )
 from tamp.simulation.engines import open_world
 from tamp.simulation.physics import load_bullet
-from tamp.simulation.settle import settle
-from tamp.simulation.shapes import centre_of_mass
 from tests.needs import NEEDS_PYBULLET
-
-ROBOT = RobotStart("panda_mobile", (0.0, 0.0, 0.0))
-
-
-def cube_hull(edge: float) -> Hull:
-    corners = np.array(list(itertools.product((-edge / 2, edge / 2), repeat=3)))
-    faces = np.array([
-        [0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1],
-        [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3],
-    ])  # fmt: skip
-    return Hull(corners, faces)
-
+from tests.simulation.scenes import body, cube_hull, scene_of
 
 SHAPES = {
     "box": Box((0.1, 0.1, 0.1)),
@@ -47,16 +30,6 @@ SHAPES = {
     "sphere": Sphere(0.05),
     "hull": cube_hull(0.1),
 }
-
-
-def scene_of(*bodies: Body) -> Scene:
-    return Scene("test", {body.name: body for body in bodies}, ROBOT, Room((-3, 3), (-3, 3)))
-
-
-def body(
-    name: str, *parts: Part, at: tuple[float, float, float] = (0, 0, 0), movable: bool = True
-) -> Body:
-    return Body(name, parts, Pose(at), movable)
 
 
 @pytest.mark.parametrize("first", SHAPES)
@@ -116,32 +89,6 @@ def test_rays_name_what_they_hit() -> None:
         assert (first, second, third) == ("a", "floor", None)
         assert at == pytest.approx(0.475, abs=1e-4)
         assert below == pytest.approx(0.5, abs=1e-4)
-
-
-def test_centre_of_mass_of_two_parts() -> None:
-    parts = (Part(cube_hull(0.1)), Part(Box((0.1, 0.1, 0.1)), Pose((0.2, 0.0, 0.0))))
-    assert np.allclose(centre_of_mass(parts), [0.1, 0.0, 0.0], atol=1e-9)
-
-
-def test_a_resting_body_stays_and_a_leaning_one_falls() -> None:
-    table = Body("table", (Part(Box((1.0, 1.0, 0.1))),), Pose((0, 0, 0.5)), movable=False)
-    block, bottle = (
-        body("block", Part(Box((0.06, 0.06, 0.2)))),
-        body("bottle", Part(cube_hull(0.06))),
-    )
-    ball = body("two", Part(cube_hull(0.04)), Part(Cylinder(0.02, 0.04), Pose((0, 0, 0.04))))
-    poses = {
-        "block": Pose((0, 0, 0.651)),
-        "bottle": Pose((0.49, 0, 0.581)),
-        "two": Pose.from_xyz_yaw(-0.3, 0.2, 0.571, 0.4),
-    }
-    settled = settle(scene_of(table, block, bottle, ball), poses, 1.0)
-    assert all(one.moved < 0.003 and one.turned < 0.02 for one in settled.values()), settled
-    poses["bottle"] = Pose((0.51, 0, 0.581))
-    poses["block"] = Pose.from_xyz_rpy((0, 0, 0.66), (0.5, 0, 0))
-    settled = settle(scene_of(table, block, bottle, ball), poses, 1.0)
-    assert settled["block"].turned > 0.5 and settled["bottle"].moved > 0.1
-    assert settled["two"].moved < 0.003
 
 
 @NEEDS_PYBULLET

@@ -10,7 +10,7 @@ import tyro
 
 from tamp.commands.execute import Execute
 from tamp.commands.export import Export
-from tamp.commands.solve_options import Arguments, parsed
+from tamp.commands.solve_options import Arguments
 from tamp.commands.verify import Verify
 from tamp.commands.view import View
 from tamp.errors import InputError
@@ -101,20 +101,3 @@ def test_options_that_may_be_repeated() -> None:
         "a=x",
         "b=y",
     )
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        ("--html x.html", "--html is for problems with a scene; one in PDDL has none"),
-        ("--record", "--record is for problems with a scene; one in PDDL has none"),
-        ("--why", "--why is for problems with a scene and streams"),
-        ("--execute", "--execute is for problems with a scene; a plan of PDDL alone has no motion"),
-        ("--optimize --search eager", "--optimize has searches of its own"),
-        ("--optimize --jobs 2", "--optimize improves a problem in PDDL in one process"),
-    ],
-)
-def test_options_that_are_of_no_use_to_a_problem_in_pddl(words: str, said: str) -> None:
-    with pytest.raises(InputError) as error:
-        parsed(["domain.pddl", "problem.pddl", *words.split()])
-    assert str(error.value).startswith(said)

@@ -2,25 +2,18 @@
 
 from __future__ import annotations
 
-import base64
-import http.client
 import json
 import re
-import urllib.error
-import urllib.request
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
-from threading import Thread
 from typing import Any
 
-import numpy as np
 import pytest
 
 from tamp.errors import InputError
 from tamp.view.document import page_document
 from tamp.view.page import page, write_page
-from tamp.view.server import PageServer
 from tamp.view.story import PlanningSummary, planning_summary
 from tamp.view.timeline import Timeline
 
@@ -84,29 +77,6 @@ def test_names_cannot_leave_their_place(timeline: Timeline) -> None:
     assert json.loads(reader.scripts[0])["title"] == evil
 
 
-def unpacked(text: str, kind: str) -> np.ndarray:
-    return np.frombuffer(base64.b64decode(text), dtype=kind)
-
-
-def test_motion_and_shapes_survive_the_packing(
-    document: dict[str, Any], timeline: Timeline
-) -> None:
-    assert unpacked(document["times"], "<f4") == pytest.approx(timeline.times, abs=1e-5)
-    assert unpacked(document["rows"], "<f4").reshape(-1, 11) == pytest.approx(
-        timeline.rows, abs=1e-5
-    )
-    can = next(body for body in document["bodies"] if body["name"] == "soup_can")
-    (mesh,) = can["meshes"]
-    grid = unpacked(mesh["vertices"], "<u2").reshape(-1, 3)
-    vertices = np.array(mesh["low"]) + grid * np.array(mesh["step"])
-    shape = timeline.scene.bodies["soup_can"].parts[0].shape
-    height = vertices[:, 2].max() - vertices[:, 2].min()
-    assert height == pytest.approx(getattr(shape, "height"), abs=1e-5)  # noqa: B009
-    assert unpacked(mesh["faces"], "<u4").max() == len(vertices) - 1
-    assert [stay["held"] for stay in can["stays"]] == [False, True, False]
-    assert [action["text"] for action in document["actions"]][1] == "pick soup_can from table"
-
-
 def test_the_story_tells_streams_skeletons_and_time(document: dict[str, Any]) -> None:
     story = document["story"]
     assert re.match(r"4 actions, \d+\.\d s of motion, found in \d+\.\d\d s · seed 0", story["head"])
@@ -140,27 +110,6 @@ def test_a_spoilt_story_is_an_input_error(stored_plan: Path, spoil: Any) -> None
         planning_summary(plan, stored_plan)
 
 
-def test_the_server_answers_with_the_page_and_nothing_else() -> None:
-    with PageServer(b"<!DOCTYPE html>hello") as server:
-        thread = Thread(target=server.serve_forever, daemon=True)
-        thread.start()
-        with urllib.request.urlopen(server.address, timeout=10) as answer:
-            assert (
-                answer.status == 200
-                and answer.headers["Content-Type"] == "text/html; charset=utf-8"
-            )
-            assert answer.read() == b"<!DOCTYPE html>hello"
-        with pytest.raises(urllib.error.HTTPError, match="404"):
-            urllib.request.urlopen(f"{server.address}etc/passwd", timeout=10)
-        assert server.address.startswith("http://127.0.0.1:")
-        with pytest.raises(InputError, match="cannot listen on port"):
-            PageServer(b"", server.server_address[1])
-        server.shutdown()
-        thread.join(10)
-    with pytest.raises(InputError, match="cannot listen on port 70000"):
-        PageServer(b"", 70000)
-
-
 def test_a_page_that_cannot_be_written(document: dict[str, Any], tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(InputError, match="cannot write the page"):
@@ -173,23 +122,3 @@ def test_a_name_may_be_a_mark_of_the_template(document: dict[str, Any]) -> None:
     found = json.loads(next(script for script in reader.scripts if script.startswith("{")))
     assert found["title"] == "@DATA@ @SCRIPT@ </script><script>alert(1)</script> \\u202e\\x1b"
     assert len(reader.scripts) == 2 and found["bodies"] == document["bodies"]
-
-
-@pytest.mark.parametrize(
-    "host", ["evil.example", "evil.example:{port}", "", "127.0.0.1.evil.example:{port}"]
-)
-def test_the_server_is_asked_by_its_own_name_only(host: str) -> None:
-    with PageServer(b"<!DOCTYPE html>secret") as server:
-        Thread(target=server.serve_forever, daemon=True).start()
-        port = server.server_address[1]
-        for name, status in (
-            (host.format(port=port), 421),
-            (f"localhost:{port}", 200),
-            (f"127.0.0.1:{port}", 200),
-        ):
-            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=10)
-            connection.request("GET", "/", headers={"Host": name})
-            answer = connection.getresponse()
-            assert answer.status == status and (b"secret" in answer.read()) == (status == 200)
-            connection.close()
-        server.shutdown()

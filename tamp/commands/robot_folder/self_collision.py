@@ -71,7 +71,7 @@ def count_meetings(
     names = list(bodies)
     balls = np.array([_ball(robot.link(name)) for name in names])
     first, second = (np.array([names.index(pair[end]) for pair in pairs]) for end in (0, 1))
-    reach = balls[first, 3] + balls[second, 3]
+    reach = balls[first, 3] + balls[second, 3] + padding
 
     for number, (conf, opening) in enumerate(states(robot, count, seed)):
         poses = kinematics.link_poses(conf, opening)

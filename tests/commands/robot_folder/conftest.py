@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from tamp.commands.robot_folder import convex, reach_table, self_collision, spheres
-from tests.commands.robot_folder.urdf import FIVE, LIFT, SIX, write_arm
+from tamp.commands.robot_folder.description import Description, read_description
+from tests.commands.robot_folder.urdf import FIVE, LIFT, SIX, arm_text, write_arm
 
 
 @pytest.fixture(scope="session")
@@ -63,3 +65,18 @@ def bolted(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def five(quick, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An arm of five joints on an omnidirectional base."""
     return made(tmp_path_factory.mktemp("five"), joints=FIVE, name="five")
+
+
+@pytest.fixture
+def described(tmp_path: Path) -> Callable[..., Description]:
+    """Reads the arm of boxes with more elements in its URDF."""
+
+    def read(extra: str, attributes: str = "") -> Description:
+        file = tmp_path / "arm.urdf"
+        text = arm_text(extra=extra).replace(
+            '<robot name="boxes">', f'<robot name="boxes"{attributes}>'
+        )
+        file.write_text(text, encoding="utf-8")
+        return read_description(file)
+
+    return read

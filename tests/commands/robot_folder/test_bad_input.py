@@ -112,17 +112,6 @@ def test_a_bad_urdf_is_one_clear_error(
     assert not (tmp_path / "made").exists() or not list((tmp_path / "made").iterdir())
 
 
-def test_another_folder_is_not_overwritten(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (tmp_path / "mine").mkdir()
-    (tmp_path / "mine" / "letter.txt").write_text("dear")
-    (tmp_path / "arm.urdf").write_text(arm_text())
-    assert main(["make", str(tmp_path / "arm.urdf"), *ARM, "--out", str(tmp_path / "mine")]) == 2
-    assert "no robot's folder" in capsys.readouterr().err
-    assert (tmp_path / "mine" / "letter.txt").read_text() == "dear"
-
-
 def yaml(old: str, new: str):
     def change(folder: Path) -> None:
         file = folder / "robot.yaml"

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from tamp.commands.robot_folder.description import find_urdf, read_description
-from tamp.commands.robot_folder.home import home
-from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
-from tamp.geometric.loading.robot_folder import read_robot
-from tamp.geometric.robot.kinematics import Kinematics
 from tests.commands.robot_folder.urdf import arm_text
 
 
@@ -41,25 +36,6 @@ def test_each_right_angle_is_made_exact_by_itself(tmp_path: Path, rpy: str, exac
     assert np.abs(R - z @ y @ x).max() < 1e-12
 
 
-def test_an_arm_whose_hand_never_points_exactly_down_has_a_home_all_the_same(five: Path) -> None:
-    robot = read_robot(five)
-    # the last axis is half a degree off the plane of the arm: no pose with the hand upright is met
-    tilt = replace(robot.joints[-1].origin, quaternion=_tilted(robot.joints[-1].origin.quaternion))
-    bent = replace(robot, joints=(*robot.joints[:-1], replace(robot.joints[-1], origin=tilt)))
-    q = home(bent, 1.1)
-    assert home_collision(bent, q) is None
-    tool = Kinematics(bent).arm_tool(np.array(q))
-    assert tool[0, 3] > robot.T_base_arm.position[0] + 0.2 and tool[2, 3] > 0.3
-
-
-def _tilted(quaternion: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
-    from tamp.geometric.scene.pose import Pose
-
-    return (
-        Pose((0.0, 0.0, 0.0), quaternion) @ Pose.from_xyz_rpy((0, 0, 0), (0.009, 0.009, 0.0))
-    ).quaternion
-
-
 def test_where_pybullet_is_missing_its_files_are_named_as_what_is_missing(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -67,3 +43,15 @@ def test_where_pybullet_is_missing_its_files_are_named_as_what_is_missing(
     with pytest.raises(InputError, match="pybullet_data is not installed") as said:
         find_urdf("pybullet_data/kuka_iiwa/model.urdf")
     assert "Python 3.11" in said.value.remedy
+
+
+def test_elements_of_a_simulator_need_no_declaration(described) -> None:
+    text = '<link name="pad"><drake:visible value="1"/></link>' + (
+        '<joint name="pad" type="fixed" drake:kind="x"><parent link="tool"/><child link="pad"/></joint>'
+    )
+    assert "pad" in described(text).links
+
+
+def test_macros_of_xacro_are_said(described) -> None:
+    with pytest.raises(InputError, match=r"macros of xacro.*Expand it first"):
+        described('<xacro:macro name="arm"/>', ' xmlns:xacro="http://www.ros.org/wiki/xacro"')

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import tamp
-from tamp.commands.robot import main
 from tamp.commands.robot_folder.check import against_physics
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.execution.execute import ExecutionOptions, execute
@@ -19,7 +18,6 @@ from tamp.geometric.robot.kinematics import Kinematics
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 from tamp.plan.open import open_plan
-from tamp.simulation import engines
 from tamp.verification.verify import verify
 from tests.needs import INSTALLED
 
@@ -112,25 +110,3 @@ def test_a_cup_holds_in_either_engine_whatever_fingers_would_do(
     assert verify(tmp_path / "plan.json", engine=engine).holds
     stored = open_plan(tmp_path / "plan.json")
     assert execute(stored, ExecutionOptions(grasp="friction", engine=engine)).reached
-
-
-@pytest.mark.parametrize(
-    ("name", "what", "engine"),
-    [
-        ("panda_fixed", "7 joints, fixed base", INSTALLED[0]),
-        ("two_pandas", "7 + 7 joints, fixed base", "mujoco"),
-        ("two_ur5", "6 + 6 joints, omnidirectional base", INSTALLED[0]),
-    ],
-)
-def test_a_robots_folder_is_checked_with_all_its_arms(
-    name: str,
-    what: str,
-    engine: str,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(engines, "installed", lambda one: one == engine)
-    assert main(["check", name]) == 0
-    said = capsys.readouterr().out
-    assert f"{name}: {what}, sound" in said
-    assert f"frames differ from {engine}'s by" in said

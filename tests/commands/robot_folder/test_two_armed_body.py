@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import pytest
 
 import tamp
 from tamp.commands.robot import main
-from tamp.commands.robot_folder.description import read_description
-from tamp.commands.robot_folder.left_out import left_out
 from tamp.commands.robot_folder.self_collision import home_collision
 from tamp.errors import InputError
 from tamp.geometric.loading.robot_folder import read_robot
 from tamp.plan.write import plan_text
 from tamp.system.files import find_domain
 from tamp.verification.verify import verify
-from tests.commands.robot_folder.urdf import arm_text
+from tests.commands.robot_folder.urdf import two_armed
 from tests.needs import INSTALLED
 
-BODY = """
-<link name="body"><inertial><mass value="30"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
-<collision><origin xyz="0 0 0.28"/><geometry><box size="0.5 0.7 0.5"/></geometry></collision></link>
-"""
 BOTH = """
 format: tamp-robot
 version: 1
@@ -36,19 +29,6 @@ arms:
 allowed:
   - left_l_pan_link right_body
 """
-
-
-def two_armed() -> str:
-    """Write a body with the arm of boxes on its left and on its right."""
-    text = '<robot name="two">' + BODY
-    for side, y in (("l", 0.22), ("r", -0.22)):
-        inside = re.sub(r"</?robot[^>]*>", "", arm_text())
-        inside = re.sub(r'\b(link name|joint name|link)="', rf'\1="{side}_', inside)
-        text += inside + (
-            f'<joint name="{side}_stands" type="fixed"><parent link="body"/><child link="{side}_foot"/>'
-            f'<origin xyz="0.1 {y} 0.53"/></joint>'
-        )
-    return text + "</robot>"
 
 
 @pytest.fixture(scope="module")
@@ -69,15 +49,6 @@ def test_what_is_left_out_has_no_shape(both: Path) -> None:
     right, left = (read_robot(both.parent / name) for name in ("right", "left"))
     assert len(right.link("body").parts) > 0 and left.link("body").parts == ()
     assert all(link.parts for link in right.links + left.links if link.name != "body")
-
-
-def test_the_arm_itself_is_never_left_out(both: Path) -> None:
-    description = read_description(both.parent / "two.urdf")
-    gone = left_out(description, ("body",), "body", "l_tool")
-    assert {"body", "l_foot", "r_foot", "r_tool"} <= gone
-    assert not {"l_pan_link", "l_wrist3_link", "l_tool"} & gone
-    with pytest.raises(InputError, match=r"--without: unknown link 'bodi'.*Did you mean 'body'"):
-        left_out(description, ("bodi",), "body", "l_tool")
 
 
 def test_both_arms_stand_free_on_one_body(both: Path) -> None:

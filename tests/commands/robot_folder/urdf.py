@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 INERTIAL = '<inertial><mass value="1.5"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>'
@@ -64,3 +65,22 @@ def _link(name: str, size: str, at: str) -> str:
         f'<link name="{name}">{INERTIAL}<collision><origin xyz="{at}"/>'
         f'<geometry><box size="{size}"/></geometry></collision></link>'
     )
+
+
+BODY = """
+<link name="body"><inertial><mass value="30"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+<collision><origin xyz="0 0 0.28"/><geometry><box size="0.5 0.7 0.5"/></geometry></collision></link>
+"""
+
+
+def two_armed() -> str:
+    """Write a body with the arm of boxes on its left and on its right."""
+    text = '<robot name="two">' + BODY
+    for side, y in (("l", 0.22), ("r", -0.22)):
+        inside = re.sub(r"</?robot[^>]*>", "", arm_text())
+        inside = re.sub(r'\b(link name|joint name|link)="', rf'\1="{side}_', inside)
+        text += inside + (
+            f'<joint name="{side}_stands" type="fixed"><parent link="body"/><child link="{side}_foot"/>'
+            f'<origin xyz="0.1 {y} 0.53"/></joint>'
+        )
+    return text + "</robot>"

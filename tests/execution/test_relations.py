@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import tamp
 from tamp.commands import solve as cli
+from tamp.errors import InputError
 from tamp.execution.execute import execute
 from tamp.execution.execution_options import ExecutionOptions
 from tamp.execution.expected import Expected
 from tamp.execution.goal import judged
 from tamp.execution.observation import ObservedScene, Observer
-from tamp.execution.relations import own_relations
+from tamp.execution.relations import named_classifiers, own_relations
 from tamp.geometric.samplers.python_file import python_grounding
 from tamp.plan.open import PlanBundle, open_plan
 from tamp.symbolic.pddl.parser import parse_domain, parse_goal
@@ -180,3 +182,30 @@ def test_a_scene_that_is_seen_is_asked_about(folder: Path) -> None:
     later = tamp.load_problem(path, groundings={"upright": upright}, scene=scene)
     assert ("stood", "tea", "tea_start", "table") in start.stream_task.task.initial
     assert not any(fact[0] == "stood" for fact in later.stream_task.task.initial)
+
+
+def named(planned: dict[str, str], said: dict[str, str], **objects: object) -> dict[str, Any]:
+    """The classifiers of a plan with these samplers, when these are said on the command line."""
+    stored: Any = SimpleNamespace(document={"options": {"samplers": planned}})
+    registry: Any = {"upright": {"mine": lambda: Never(None), "proposes": object}}
+    files = {"tidy": "folder/tidy.py"}
+    return dict(named_classifiers(stored, said, objects, registry, files))  # type: ignore[arg-type]
+
+
+def test_classifiers_are_those_that_the_plan_or_the_command_line_names() -> None:
+    assert {name: called for name, (called, _) in named({"upright": "mine"}, {}).items()} == {
+        "upright": "mine"
+    }
+    assert named({"upright": "proposes"}, {}) == {}  # it classifies nothing
+    assert named({"on": "surface", "upright": "given"}, {}) == {}
+    never = Never(None)
+    assert named({}, {}, tidy=never, upright=never, on=never) == {
+        "tidy": ("tidy.py", never),
+        "upright": ("Never", never),
+    }
+
+
+def test_what_the_plan_names_and_is_gone_is_left_out_but_not_what_was_just_said() -> None:
+    assert named({"upright": "gone"}, {}) == {}
+    with pytest.raises(InputError, match=r"unknown sampler 'gone'"):
+        named({"upright": "mine"}, {"upright": "gone"})

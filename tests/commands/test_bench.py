@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from tamp.benchmark.case import Case
-from tamp.benchmark.run_case import ERROR, run_case
 from tamp.commands.bench import BAD_INPUT, DONE, run
 from tests.benchmark.toys import line, some
 
@@ -58,12 +56,6 @@ def test_tables_and_pictures_of_a_log(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "Did you mean 'default'" in capsys.readouterr().err
     assert run(["draw", str(log)]) == DONE
     assert (tmp_path / "log" / "ecdf.png").exists()
-
-
-def test_an_error_of_the_planner_is_an_outcome() -> None:
-    told = run_case(Case("swap", "default", 0, 1.0, samplers=(("on", "nobody"),)), dict)
-    assert told["outcome"] == ERROR and not told["solved"]
-    assert "nobody" in told["explanation"][-1]
 
 
 @pytest.mark.slow

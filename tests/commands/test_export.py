@@ -1,3 +1,5 @@
+"""tamp-export as a user meets it: each format, where it goes, one clear error for each bad input."""
+
 from __future__ import annotations
 
 import csv
@@ -11,9 +13,9 @@ import numpy as np
 import pytest
 
 from tamp.commands.export import main
-from tamp.export.trajectory import rates
 from tamp.geometric.loading.robots import ROBOTS
-from tamp.plan.open import open_plan, read_motions, robot_of
+from tamp.plan.open import open_plan
+from tests.plan.making import moved
 
 PANDA = ROBOTS["panda_mobile"]()
 ARM = [joint.name for joint in PANDA.joints]
@@ -61,12 +63,6 @@ def test_velocities_rest_at_the_ends_and_keep_the_limits(stored_plan: Path, tmp_
             fastest[segment["part"]] = max(fastest[segment["part"]], float(share.max()))
     assert max(fastest.values()) <= 1.0 + 1e-6
     assert min(fastest.values()) > 0.5
-
-
-def test_rates_of_constant_acceleration_are_exact() -> None:
-    times = np.array([0.0, 0.1, 0.25, 0.3, 0.5])
-    velocities = rates(times, (1.5 * times**2)[:, None])
-    assert velocities[1:-1, 0] == pytest.approx(3.0 * times[1:-1])
 
 
 def test_csv_has_all_joints_in_every_row(stored_plan: Path, tmp_path: Path) -> None:
@@ -154,17 +150,6 @@ def test_bad_input_is_one_line_and_exit_code_two(
         assert expected in said and said.count("\n") == 1
 
 
-def moved(plan: Path, folder: Path) -> tuple[Path, Path]:
-    """The plan as if made from a problem file that the test may change."""
-    document = json.loads(plan.read_text(encoding="utf-8"))
-    problem = folder / "mine.yaml"
-    problem.write_bytes(Path(document["inputs"]["problem"]["path"]).read_bytes())
-    document["inputs"]["problem"]["path"] = str(problem)
-    file = folder / "moved.json"
-    file.write_text(json.dumps(document), encoding="utf-8")
-    return file, problem
-
-
 def test_a_plan_whose_problem_changed_is_refused(
     stored_plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -181,15 +166,3 @@ def test_a_plan_whose_problem_changed_is_refused(
         open_plan(plan)
     problem.unlink()
     assert main([str(plan), "--out", str(tmp_path / "out.json")]) == 0  # trajectories need no scene
-
-
-def test_a_plan_opens_with_its_scene_and_robot(stored_plan: Path, tmp_path: Path) -> None:
-    stored = open_plan(stored_plan)
-    assert stored.loaded.scene.name == "one_object"
-    assert stored.robot.name == robot_of(read_motions(stored_plan)).name == "panda_mobile"
-    plan, problem = moved(stored_plan, tmp_path)
-    elsewhere = tmp_path / "elsewhere.yaml"
-    problem.rename(elsewhere)
-    with pytest.raises(Exception, match="Give --problem FILE"):
-        open_plan(plan)
-    assert open_plan(plan, elsewhere).loaded.path == elsewhere
