@@ -183,3 +183,15 @@ def test_a_configuration_may_be_a_row_of_a_strided_array(
     every_other = np.repeat(at(robot, 2.01), 2)[::2]
     assert arrangement.free(np.repeat(at(robot), 2)[::2])
     assert not arrangement.free(every_other) and not arrangement.edge_free(at(robot), every_other)
+
+
+def test_fcl_finds_the_floor_for_all_but_what_stands_on_it(
+    robot: Robot, kinematics: Kinematics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    arrangement = Collisions(scene(), robot, kinematics).arrangement({})
+    low = at(robot)
+    low[3:] = [0.0, 1.7, 0.0, -1.2, 0.0, 2.0, 0.8]
+    monkeypatch.setattr(module, "check_edge", undecided_from(0.0))
+    hit = arrangement.hits(low)
+    assert hit is not None and hit[1] == "floor" and hit[0] not in (robot.base, robot.foot)
+    assert arrangement.hits(at(robot), 0.0205) is None  # the base is 0.02 m above it

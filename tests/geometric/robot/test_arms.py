@@ -118,55 +118,6 @@ def test_kinematics_of_all_arms_are_those_of_each(rng: np.random.Generator) -> N
         assert both.tool(row, number) == pytest.approx(T_world_tool, abs=1e-9)
 
 
-GOOD = (ASSETS / "two_pandas" / "robot.yaml").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("was", "becomes", "message"),
-    [
-        ("robot: panda_fixed", "robot: no_such_robot", "no robot's folder 'no_such_robot'"),
-        (
-            "robot: panda_fixed",
-            "robot: two_pandas",
-            "the robot 'two_pandas' has several arms itself",
-        ),
-        ("  left:", "  Left:", "'Left' is no name of an arm"),
-        ("  left:", "  right:", "right"),
-        ("drive: fixed", "drive: hovering", "unknown drive 'hovering'"),
-        (
-            "quaternion: [0.0, 0.0, 0.0, 1.0]",
-            "quaternion: [0.0, 0.0, 0.0, 2.0]",
-            "its norm is not 1",
-        ),
-        ("arms:", "arms: {}\nothers:", "others"),
-    ],
-)
-def test_bad_arms_are_refused_with_the_reason(
-    was: str, becomes: str, message: str, tmp_path: Path
-) -> None:
-    assert was in GOOD
-    (tmp_path / "robot.yaml").write_text(GOOD.replace(was, becomes), encoding="utf-8")
-    with pytest.raises(InputError, match=message) as error:
-        read_robot(tmp_path)
-    assert "robot.yaml" in str(error.value)
-
-
-def test_one_arm_is_no_body_of_several(tmp_path: Path) -> None:
-    text = GOOD[: GOOD.index("  right:")]
-    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match="several arms are at least two"):
-        read_robot(tmp_path)
-
-
-def test_a_shipped_robots_arm_is_found_by_its_name(tmp_path: Path) -> None:
-    text = GOOD.replace("robot: panda_fixed", "robot: xarm7")
-    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
-    made = read_robot(tmp_path)
-    assert [arm.arm for arm in made.arms] == ["left", "right"]
-    assert all(link.name.startswith(("pedestal", "left_", "right_")) for link in made.links)
-    assert {file.parent.name for file in made.files} == {tmp_path.name, "xarm7"}
-
-
 DRIVING = (ASSETS / "two_ur5" / "robot.yaml").read_text(encoding="utf-8")
 
 
