@@ -19,7 +19,7 @@ from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics, base_matrix
 from tamp.geometric.robot.reachability import Reachability
 from tamp.geometric.robot.robot import Link, Robot
-from tamp.geometric.robot.states import arm_of, columns, rest_row, with_arm
+from tamp.geometric.robot.states import rest_row, with_arm
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part, RobotStart, Room, Scene
 from tamp.simulation.engines import open_world
@@ -52,10 +52,6 @@ def test_all_arms_have_the_links_of_all() -> None:
     assert left.still_links.keys() | right.still_links.keys() == {
         link.name for link in TWO.links if link.name != TWO.base
     }
-    assert len(rest_row(TWO)) == 3 + 2 * 8
-    assert columns(TWO) == (slice(3, 11), slice(11, 19))
-    with pytest.raises(KeyError):
-        arm_of(TWO, "middle")
 
 
 def test_an_arm_that_stands_still_is_where_its_own_kinematics_have_it(
