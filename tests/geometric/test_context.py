@@ -1,4 +1,4 @@
-"""The tools that a problem's streams share: made once, and for a body with its load, one of several arms, a step's scene."""
+"""The tools that a problem's streams share, made once; and for a body with its load, for an arm, for a step's scene."""
 
 from __future__ import annotations
 
@@ -59,15 +59,23 @@ def test_only_an_arm_of_too_few_joints_has_its_base_fitted(rng: np.random.Genera
     assert Context(scene(), short, {}).base_fit is not None
 
 
-def test_boxes_and_balls_around_bodies() -> None:
-    """The cube of 0.2 m is 0.3 m along x from its body's frame: its farthest corner is at (0.4, 0.1, 0.1)."""
+@pytest.mark.parametrize("axis", range(3))
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_ball_around_a_bodys_frame_reaches_its_farthest_corner(axis: int, side: float) -> None:
+    """Of a cube of 0.2 m that is 0.3 m aside: 0.4 m away along that axis, 0.1 m along the others."""
+    x, y, z = (0.3 * side * np.eye(3)[axis]).tolist()
+    part = Part(Box((0.2, 0.2, 0.2)), Pose((x, y, z)))
+    context = made(Body("thing", (part,), Pose(), movable=True))
+    assert context.radius("thing") == pytest.approx(np.sqrt(0.4**2 + 2 * 0.1**2))
+
+
+def test_a_box_around_a_placed_body() -> None:
     part = Part(Box((0.2, 0.2, 0.2)), Pose((0.3, 0.0, 0.0)))
     context = made(Body("thing", (part,), Pose(), movable=True))
     quarter = Pose.from_xyz_yaw(1.0, 2.0, 3.0, np.pi / 2)
     low, high = context.box("thing", quarter)
     assert low == pytest.approx([0.9, 2.2, 2.9]) and high == pytest.approx([1.1, 2.4, 3.1])
     assert context.box("thing", quarter)[0] is low  # worked out once
-    assert context.radius("thing") == pytest.approx(np.sqrt(0.4**2 + 2 * 0.1**2))
 
 
 def test_fixed_parts_are_those_of_fixed_bodies_alone() -> None:
