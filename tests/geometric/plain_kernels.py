@@ -14,8 +14,8 @@ def plain(*modules: ModuleType, **toys: Any) -> Any:
     for module in modules:
         names |= vars(module)
     for name, value in list(names.items()):
-        code = getattr(getattr(value, "py_func", None), "__code__", None)
-        if code is not None:
-            names[name] = FunctionType(code, names, name)
+        python = getattr(value, "py_func", None)
+        if isinstance(python, FunctionType):
+            names[name] = FunctionType(python.__code__, names, name, None, python.__closure__)
     names |= toys
     return SimpleNamespace(**{name: value for name, value in names.items() if name != "__name__"})

@@ -81,8 +81,10 @@ def _closed(name: str, mesh: Any) -> MeshSurface:
             if len(nearer.faces) and open_edges(nearer.faces) < gaps:
                 mesh = nearer
             mesh.fill_holes()
-            if mesh.is_watertight:
-                mesh.fix_normals(multibody=True)
+            # Sheets that were closed by their backs have no volume to divide by.
+            with np.errstate(divide="ignore", invalid="ignore"):
+                if mesh.is_watertight:
+                    mesh.fix_normals(multibody=True)
 
         left = open_edges(mesh.faces)
         what = (

@@ -1,4 +1,4 @@
-"""Rows of convex parts as the kernels read them, and FCL's exact answers on the same shapes."""
+"""Rows of convex parts as the kernels read them: a part's box, sphere and leaves, and the world's box around it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tamp.geometric.collision.fcl_bodies import FclBody, depth, gap, touch
 from tamp.geometric.collision.tables import (
     BOX,
     CENTRE,
@@ -103,28 +102,3 @@ def test_the_worlds_box_holds_the_part_and_is_exact_for_boxes(
         assert (low[0] <= least + 1e-12).all() and (high[0] >= most - 1e-12).all()
         if not isinstance(shape, Cylinder):
             assert low[0] == pytest.approx(least) and high[0] == pytest.approx(most)
-
-
-SHAPES = [Box((0.2, 0.2, 0.2)), hull(cuboid((0.2, 0.2, 0.2))), Cylinder(0.1, 0.2), Sphere(0.1)]
-
-
-@pytest.mark.parametrize("first", SHAPES, ids=["box", "hull", "cylinder", "sphere"])
-@pytest.mark.parametrize("second", SHAPES, ids=["box", "hull", "cylinder", "sphere"])
-def test_fcl_knows_gaps_and_depths_along_an_axis(first: Shape, second: Shape) -> None:
-    here, there = FclBody((Part(first),)), FclBody((Part(second),))
-    one = here.place(0, np.eye(4))
-    apart = there.place(0, Pose((0.25, 0.0, 0.0)).matrix)
-    assert gap(one, apart) == pytest.approx(0.05, abs=1e-5)
-    assert touch(one, apart, 0.051) and not touch(one, apart, 0.049) and not touch(one, apart, 0.0)
-    assert depth(one, apart) == 0.0
-    inside = there.place(0, Pose((0.17, 0.0, 0.0)).matrix)
-    assert touch(one, inside, 0.0) and gap(one, inside) == 0.0
-    assert depth(one, inside) == pytest.approx(0.03, rel=0.05)
-
-
-def test_a_part_stands_at_its_pose_in_the_body_and_is_moved_with_it() -> None:
-    pair = FclBody((Part(Sphere(0.1), Pose((0.5, 0, 0))), Part(Sphere(0.1), Pose((-0.5, 0, 0)))))
-    turned = Pose.from_xyz_yaw(1.0, 0.0, 0.0, math.pi / 2).matrix
-    assert pair.place(0, turned).getTranslation() == pytest.approx([1.0, 0.5, 0.0])
-    assert pair.place(1, turned).getTranslation() == pytest.approx([1.0, -0.5, 0.0])
-    assert pair.place(0, np.eye(4)).getTranslation() == pytest.approx([0.5, 0.0, 0.0])

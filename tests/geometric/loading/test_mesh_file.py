@@ -12,8 +12,7 @@ import trimesh
 from trimesh.exchange.stl import export_stl_ascii
 
 from tamp.errors import InputError
-from tamp.geometric.loading.collada import read_collada
-from tamp.geometric.loading.mesh_file import MOST_BYTES, Beside, read_triangles
+from tamp.geometric.loading.mesh_file import MOST_BYTES, Beside
 from tamp.geometric.loading.meshes import find_mesh, load_mesh
 
 TETRAHEDRON = "v 0 0 0\nv 0.05 0 0\nv 0 0.06 0\nv 0 0 0.07\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
@@ -31,9 +30,7 @@ PLY, BINARY_PLY = exported("ply", encoding="ascii"), exported("ply")
 BINARY_STL, GLB = exported("stl"), exported("glb")
 
 
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TAMP_CACHE", str(tmp_path / "cache"))
+pytestmark = pytest.mark.usefixtures("own_cache")
 
 
 @pytest.mark.parametrize(
@@ -150,102 +147,3 @@ def test_files_beside_a_mesh_only(tmp_path: Path) -> None:
     for name in ("../secret", str(tmp_path / "secret"), "link", "gone", "/dev/zero"):
         with pytest.raises(InputError):
             beside.get(name)
-
-
-DAE = """<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="centimeter" meter="0.01"/><up_axis>Y_UP</up_axis></asset>
-<library_geometries><geometry id="g"><mesh>
-  <source id="p"><float_array id="pa" count="12">0 0 0 5 0 0 0 6 0 0 0 7</float_array></source>
-  <source id="n"><float_array id="na" count="3">0 0 1</float_array></source>
-  <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-  GROUP
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node>
-  NODE<instance_geometry url="#g"/>
-</node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>
-"""
-INPUTS = '<input semantic="VERTEX" source="#v" offset="0"/><input semantic="NORMAL" source="#n" offset="1"/>'
-GROUP = f'<triangles count="4">{INPUTS}<p>0 0 2 0 1 0  0 0 1 0 3 0  1 0 2 0 3 0  0 0 3 0 2 0</p></triangles>'
-
-
-def test_transforms_beyond_all_numbers_are_refused_without_a_warning(tmp_path: Path) -> None:
-    far = "<scale>1e200 1e200 1e200</scale>" * 2
-    (tmp_path / "a.dae").write_text(DAE.replace("GROUP", GROUP).replace("NODE", far))
-    with pytest.raises(InputError, match="not finite"):
-        load_mesh(tmp_path / "a.dae")
-
-
-@pytest.mark.parametrize(
-    ("node", "low", "high"),
-    [
-        ("", (0, 0, 0), (0.05, 0.06, 0.07)),
-        ("<translate>100 0 0</translate>", (1, 0, 0), (1.05, 0.06, 0.07)),
-        ("<scale>2 1 1</scale>", (0, 0, 0), (0.1, 0.06, 0.07)),
-        ("<rotate>0 0 1 90</rotate>", (-0.06, 0, 0), (0, 0.05, 0.07)),
-        ("<matrix>1 0 0 0 0 1 0 0 0 0 -1 10 0 0 0 1</matrix>", (0, 0, 0.03), (0.05, 0.06, 0.1)),
-        ("<translate>0 0 10</translate><scale>1 1 2</scale>", (0, 0, 0.1), (0.05, 0.06, 0.24)),
-    ],
-)
-def test_colladas_unit_and_nodes_count(
-    tmp_path: Path, node: str, low: tuple[float, ...], high: tuple[float, ...]
-) -> None:
-    (tmp_path / "a.dae").write_text(DAE.replace("NODE", node).replace("GROUP", GROUP))
-    vertices, faces = read_triangles(tmp_path / "a.dae")
-    assert vertices.min(axis=0) == pytest.approx(low, abs=1e-12) and vertices.max(
-        axis=0
-    ) == pytest.approx(high)
-    a, b, c = vertices[faces].transpose(1, 0, 2)
-    volume = (
-        np.einsum(
-            "ij,ij->", a - vertices.mean(axis=0), np.cross(b, c) - np.cross(b, a) - np.cross(a, c)
-        )
-        / 6
-    )
-    assert volume > 0  # outward, mirrored or not
-
-
-@pytest.mark.parametrize(
-    "group",
-    [
-        GROUP,
-        f'<polylist count="4">{INPUTS}<vcount>3 3 3 3</vcount>'
-        + GROUP.partition(INPUTS)[2].replace("triangles", "polylist"),
-        f"<polygons>{INPUTS}<p>0 0 2 0 1 0</p><p>0 0 1 0 3 0</p><p>1 0 2 0 3 0</p><p>0 0 3 0 2 0</p></polygons>",
-        f"<tristrips>{INPUTS}<p>0 0 2 0 1 0 3 0 0 0 2 0</p></tristrips>",
-    ],
-)
-def test_colladas_ways_to_say_triangles(tmp_path: Path, group: str) -> None:
-    (tmp_path / "a.dae").write_text(DAE.replace("NODE", "").replace("GROUP", group))
-    vertices, faces = read_collada(tmp_path / "a.dae", 10_000)
-    assert len(faces) == 4 and len(vertices) == 4
-    assert {tuple(sorted(face)) for face in faces.tolist()} == {
-        (0, 1, 2),
-        (0, 1, 3),
-        (1, 2, 3),
-        (0, 2, 3),
-    }
-    assert load_mesh(tmp_path / "a.dae").parts
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('url="#g"', 'url="#h"', "shows '#h', which it does not hold"),
-        ('meter="0.01"', 'meter="0"', "its unit is 0 m"),
-        ('meter="0.01"', 'meter="far"', "<unit> is not made of numbers"),
-        ("0 0 2 0 1 0 ", "0 0 2 0 9 0 ", "a face names a missing corner"),
-        ("0 0 2 0 1 0 ", "0 0 2 0 x 0 ", "not made of whole numbers"),
-        ("0 0 0 5 0 0", "0 0 0 five 0 0", "<float_array> is not made of numbers"),
-        ("NODE", "<translate>1 2</translate>", "<translate> has 2 numbers, not 3"),
-        ("NODE", "<node>" * 200 + "</node>" * 200, "nested too deeply"),
-        ("<node>\n", '<node id="me"><instance_node url="#me"/>', "nested too deeply"),
-    ],
-)
-def test_broken_collada(tmp_path: Path, old: str, new: str, message: str) -> None:
-    text = DAE.replace("GROUP", GROUP)
-    assert text.count(old) == 1
-    (tmp_path / "a.dae").write_text(text.replace(old, new).replace("NODE", ""))
-    with pytest.raises(InputError, match=message):
-        load_mesh(tmp_path / "a.dae")

@@ -22,9 +22,7 @@ BRICK = (
 TETRAHEDRON = "v 0 0 0\nv 0.05 0 0\nv 0 0.06 0\nv 0 0 0.07\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
 
 
-@pytest.fixture(autouse=True)
-def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("TAMP_CACHE", str(tmp_path / "cache"))
+pytestmark = pytest.mark.usefixtures("own_cache")
 
 
 def written(folder: Path, text: str | bytes, name: str = "thing.urdf") -> Path:

@@ -1,4 +1,4 @@
-"""A base that drives like a car: its curves, samples where it reverses, ways out of narrow places."""
+"""A base that drives like a car: round what is in its way, out of narrow places, within the room."""
 
 from __future__ import annotations
 
@@ -6,25 +6,14 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
-import pytest
 
-from tamp.geometric.motion.car import CURVE_STEP_RAD, drive_curves
-from tamp.geometric.motion.reeds_shepp import curve
-from tamp.geometric.motion.sampling_based import PlaneSpace
+from tamp.geometric.motion.car import drive_curves
 from tamp.geometric.scene.pose import Array
 from tamp.geometric.scene.scene import Room
 from tamp.system.deadline import Deadline
+from tests.geometric.motion.driven import assert_driven
 
 ROOM = Room((-3.0, 3.0), (-3.0, 3.0))
-
-
-def assert_driven(path: Array, radius: float) -> None:
-    """No chord leads aside of the mean heading, none turns tighter than the circle."""
-    steps, heading = np.diff(path, axis=0), (path[:-1, 2] + path[1:, 2]) / 2
-    long = np.linalg.norm(steps[:, :2], axis=1)
-    aside = np.abs(steps[:, 1] * np.cos(heading) - steps[:, 0] * np.sin(heading))
-    assert aside.max() < 1e-4
-    assert np.all(np.abs(steps[:, 2]) <= 1.001 * long / radius + 1e-5)
 
 
 def drive(
@@ -38,40 +27,6 @@ def drive(
         np.array(start, dtype=float), np.array(goal, dtype=float), ROOM, edge_free,
         turning_radius=radius, seed=seed, checks=400, deadline=Deadline(60),
     )  # fmt: skip
-
-
-@pytest.mark.parametrize("seed", range(40))
-def test_the_samples_of_a_curve_are_a_cars(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    radius = float(rng.choice([0.3, 1.0, 2.0]))
-    start = np.array([*rng.uniform(-1, 1, 2), rng.uniform(-3, 3)])
-    goal = start + np.array(
-        [*rng.normal(size=2) * rng.choice([0.05, 0.5, 2.0]), rng.uniform(-3, 3)]
-    )
-    step = min(0.05, CURVE_STEP_RAD * radius)
-
-    path = curve(PlaneSpace(ROOM.x, ROOM.y, radius), start, goal, step)
-
-    assert np.array_equal(path[0], start) and np.array_equal(path[-1], goal)
-    path[:, 2] = np.unwrap(path[:, 2])
-    assert_driven(path, radius)
-    assert np.all(np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1) <= step + 1e-9)
-
-
-def test_where_it_reverses_is_a_sample() -> None:
-    # Half a metre to the side, the heading kept, takes a turn that is not driven in one direction.
-    path = curve(PlaneSpace(ROOM.x, ROOM.y, 1.0), np.zeros(3), np.array([0.0, 0.5, 0.0]), 0.03)
-    steps = np.diff(path[:, :2], axis=0)
-    heading = (path[:-1, 2] + path[1:, 2]) / 2
-    ahead = steps[:, 0] * np.cos(heading) + steps[:, 1] * np.sin(heading)
-    reversals = int(np.sum(np.sign(ahead[1:]) != np.sign(ahead[:-1])))
-    assert reversals in (1, 2)
-    assert_driven(path, 1.0)
-
-
-def test_two_places_that_are_one_need_no_curve() -> None:
-    path = curve(PlaneSpace(ROOM.x, ROOM.y, 1.0), np.zeros(3), np.zeros(3), 0.03)
-    assert path.shape == (2, 3)
 
 
 def test_it_drives_round_what_stands_in_the_way() -> None:

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tamp.geometric.motion.reeds_shepp import curve
 from tamp.geometric.motion.sampling_based import JointSpace, PlaneSpace, connect
 from tamp.geometric.scene.pose import Array
 from tamp.system.deadline import Deadline, OutOfTime
@@ -133,25 +132,6 @@ def test_an_exception_in_the_checker_reaches_the_caller() -> None:
 
     with pytest.raises(ValueError, match="from the checker"):
         _search(1, broken)
-
-
-def test_a_curve_keeps_its_turning_radius() -> None:
-    plane = PlaneSpace((-5.0, 5.0), (-5.0, 5.0), turning_radius=0.5)
-    rng = np.random.default_rng(0)
-    looked = 0
-    for _ in range(20):
-        start, end = rng.uniform([-2, -2, -3], [2, 2, 3], (2, 3))
-        samples = curve(plane, start, end, 0.02)
-        assert np.array_equal(samples[0], start) and np.array_equal(samples[-1], end)
-        steps = np.diff(samples, axis=0)
-        turns = np.abs((steps[:, 2] + np.pi) % (2 * np.pi) - np.pi)
-        travelled = np.hypot(steps[:, 0], steps[:, 1])
-        assert np.all(
-            turns <= 0.02 / 0.5 + 1e-6
-        )  # a step along the curve turns by its length over the radius
-        assert np.all(travelled <= 0.02 + 1e-9)
-        looked += 1
-    assert looked == 20
 
 
 TURNS = [

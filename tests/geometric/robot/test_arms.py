@@ -19,7 +19,7 @@ from tamp.geometric.robot.inverse_kinematics import ArmIK
 from tamp.geometric.robot.kinematics import ArmsKinematics, Kinematics, base_matrix
 from tamp.geometric.robot.reachability import Reachability
 from tamp.geometric.robot.robot import Link, Robot
-from tamp.geometric.robot.states import arm_of, columns, rest_row, with_arm
+from tamp.geometric.robot.states import rest_row, with_arm
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Part, RobotStart, Room, Scene
 from tamp.simulation.engines import open_world
@@ -52,10 +52,6 @@ def test_all_arms_have_the_links_of_all() -> None:
     assert left.still_links.keys() | right.still_links.keys() == {
         link.name for link in TWO.links if link.name != TWO.base
     }
-    assert len(rest_row(TWO)) == 3 + 2 * 8
-    assert columns(TWO) == (slice(3, 11), slice(11, 19))
-    with pytest.raises(KeyError):
-        arm_of(TWO, "middle")
 
 
 def test_an_arm_that_stands_still_is_where_its_own_kinematics_have_it(
@@ -116,55 +112,6 @@ def test_kinematics_of_all_arms_are_those_of_each(rng: np.random.Generator) -> N
     for number, arm in enumerate(TWO.arms):
         T_world_tool = poses[arm.hand] @ arm.T_hand_tool.matrix
         assert both.tool(row, number) == pytest.approx(T_world_tool, abs=1e-9)
-
-
-GOOD = (ASSETS / "two_pandas" / "robot.yaml").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("was", "becomes", "message"),
-    [
-        ("robot: panda_fixed", "robot: no_such_robot", "no robot's folder 'no_such_robot'"),
-        (
-            "robot: panda_fixed",
-            "robot: two_pandas",
-            "the robot 'two_pandas' has several arms itself",
-        ),
-        ("  left:", "  Left:", "'Left' is no name of an arm"),
-        ("  left:", "  right:", "right"),
-        ("drive: fixed", "drive: hovering", "unknown drive 'hovering'"),
-        (
-            "quaternion: [0.0, 0.0, 0.0, 1.0]",
-            "quaternion: [0.0, 0.0, 0.0, 2.0]",
-            "its norm is not 1",
-        ),
-        ("arms:", "arms: {}\nothers:", "others"),
-    ],
-)
-def test_bad_arms_are_refused_with_the_reason(
-    was: str, becomes: str, message: str, tmp_path: Path
-) -> None:
-    assert was in GOOD
-    (tmp_path / "robot.yaml").write_text(GOOD.replace(was, becomes), encoding="utf-8")
-    with pytest.raises(InputError, match=message) as error:
-        read_robot(tmp_path)
-    assert "robot.yaml" in str(error.value)
-
-
-def test_one_arm_is_no_body_of_several(tmp_path: Path) -> None:
-    text = GOOD[: GOOD.index("  right:")]
-    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
-    with pytest.raises(InputError, match="several arms are at least two"):
-        read_robot(tmp_path)
-
-
-def test_a_shipped_robots_arm_is_found_by_its_name(tmp_path: Path) -> None:
-    text = GOOD.replace("robot: panda_fixed", "robot: xarm7")
-    (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
-    made = read_robot(tmp_path)
-    assert [arm.arm for arm in made.arms] == ["left", "right"]
-    assert all(link.name.startswith(("pedestal", "left_", "right_")) for link in made.links)
-    assert {file.parent.name for file in made.files} == {tmp_path.name, "xarm7"}
 
 
 DRIVING = (ASSETS / "two_ur5" / "robot.yaml").read_text(encoding="utf-8")

@@ -9,7 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from tamp.planner.problem import Problem, load_problem
+from tamp.planner.solve import solve
 from tamp.stream import Call, Rejection
+from tamp.symbolic.algorithms.result import Outcome
 from tamp.system.deadline import Deadline
 from tests.needs import MESHES
 
@@ -52,3 +54,44 @@ def values(tries: object, count: int, most: int = 2000) -> list:
     """The first values among a stream's tries."""
     kept = (value for value in itertools.islice(tries, most) if not isinstance(value, Rejection))  # type: ignore
     return list(itertools.islice(kept, count))
+
+
+HIGH = """
+domain: cupboard
+robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
+room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
+bodies:
+  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: 90 deg}}
+  board: {{box: [0.8, 0.3, 0.03], at: [-1.6, 0.4, {height}], yaw: 90 deg, fixed: true}}
+  {thing}
+goal: (on cup {goal})
+"""
+
+
+def solved(text: str, folder: Path, seconds: float) -> tuple[Outcome, str]:
+    """What comes out of a scene, and the lines that explain it."""
+    path = folder / "scene.yaml"
+    path.write_text(text, encoding="utf-8")
+    solution = solve(load_problem(path), max_time=seconds)
+    return solution.outcome, "\n".join(solution.explanation)
+
+
+CARRIERS = """\
+domain: carriers
+robot: {model: panda_mobile, base: [0.0, 0.0, 0.0]}
+room: {x: [-2.5, 2.5], y: [-2.5, 2.5]}
+bodies:
+  table:  {furniture: table, size: [1.2, 0.7, 0.6], at: [1.2, 0.0, 0.0], yaw: 90 deg}
+  post:   {box: [0.05, 0.05, 0.1], on: table}
+  plate:  {box: [0.3, 0.3, 0.01], on: post}
+  cube:   {box: [0.04, 0.04, 0.04], on: table, at: [0.4, 0.1]}
+  crate:  {furniture: open_box, size: [0.3, 0.2, 0.1], fixed: false, on: table, at: [-0.4, 0.0]}
+goal: (and (on cube plate) (inside cube crate))
+"""
+
+
+def carriers(folder: Path) -> Problem:
+    """A plate on a post, an open crate and a cube on a table, all movable."""
+    file = folder / "own.yaml"
+    file.write_text(CARRIERS, encoding="utf-8")
+    return load_problem(file)

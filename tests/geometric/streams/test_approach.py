@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.streams import approach, collisions
+from tamp.geometric.streams import approach
 from tamp.geometric.streams.approach import LIFT_DISTANCE_M, RETREAT_DISTANCE_M, approach_hits
-from tamp.geometric.streams.collisions import NEIGHBOUR_CLEARANCE_M
 from tamp.geometric.values import Grasp
 from tamp.planner.problem import Problem
 from tamp.stream import Rejection, RejectionKind
@@ -87,22 +86,6 @@ def test_a_movable_body_in_the_way_is_named_as_a_blocker(problem: Problem) -> No
         approach.test_approach_clear(context, "box", pose, from_above(), "box", there, call())
         is True
     )  # itself
-
-
-@pytest.mark.parametrize(
-    ("gap", "clear"),
-    [(2 * NEIGHBOUR_CLEARANCE_M, True), (0.5 * NEIGHBOUR_CLEARANCE_M, False), (-0.01, False)],
-)
-def test_placed_bodies_keep_some_air(problem: Problem, gap: float, clear: bool) -> None:
-    upright = Pose((0.0, 0.0, 2.0))
-    lamp = problem.scene.bodies["lamp"].parts[0].shape
-    beside = Pose((0.0225 + lamp.radius + gap, 0.0, 2.0))  # type: ignore[union-attr]
-    found = collisions.test_pose_clear(problem.context, "box", upright, "lamp", beside, call())
-    assert (found is True) == clear
-    assert found is True or (isinstance(found, Rejection) and found.blockers == ("lamp",))
-    assert (
-        collisions.test_pose_clear(problem.context, "box", upright, "box", upright, call()) is True
-    )
 
 
 def test_a_wider_opening_needs_more_room(problem: Problem) -> None:

@@ -16,7 +16,6 @@ from tamp.geometric.robot.robot import Robot
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, Sphere
 from tamp.geometric.stability.ray_crossings import ConvexUnion
-from tamp.geometric.streams.firmness import GRAVITY_M_S2, strain
 from tamp.geometric.streams.grasps import sample_grasps
 from tamp.geometric.streams.hand_fit import (
     FRICTION_CONE_RAD,
@@ -209,37 +208,6 @@ def test_the_hand_grasps_up_to_its_opening_less_the_clearance(
     assert bool(grasps) is fits
     for grasp in grasps:
         assert width <= grasp.opening <= robot.opening - HAND_CLEARANCE_M + 0.002
-
-
-def test_a_grasp_is_strained_by_weight_times_lever() -> None:
-    thing = replace(body(Box((0.3, 0.05, 0.05))), mass=0.5)
-    patch = np.array([(x, 0.0, z) for x in (-0.006, 0.0, 0.006) for z in (-0.006, 0.0, 0.006)])
-    up = np.array([0.0, 0.0, -1.0])
-
-    def much(x: float, mass: float = 0.5, friction: float = 0.5, force: float = 50.0) -> float:
-        T = np.eye(4)
-        T[0, 3] = x
-        one = replace(thing, mass=mass, friction=friction)
-        return strain(one, np.zeros(3), T, 0.05, (patch, patch), force, (up,))
-
-    levers = [much(x) for x in (0.0, 0.03, 0.06, 0.12)]
-    assert levers == sorted(levers) and levers[0] < 0.2
-    # By hand: 2 pads x 25 N x the mean distance on the patch against 1.3 x 0.5 kg x 9.81 m/s2 x 12 cm.
-    arm = (
-        1.3
-        * 0.5
-        * GRAVITY_M_S2
-        * 0.12
-        / (2 * 25.0 * (0.001 + float(np.linalg.norm(patch, axis=1).mean())))
-    )
-    assert much(0.12) == pytest.approx(arm, rel=0.15)
-    assert much(0.12) == much(-0.12)
-    assert (
-        much(0.06, mass=1.0)
-        > much(0.06)
-        > much(0.06, friction=1.0)
-        > much(0.06, friction=1.0, force=100.0)
-    )
 
 
 def test_grasps_near_the_centre_of_mass_come_first(robot: Robot) -> None:

@@ -16,18 +16,14 @@ from tamp.geometric.scene.scene import Body, Box, Cylinder, Hull, Part, Shape, S
 from tamp.geometric.stability.hulls import body_hull
 from tamp.geometric.stability.placement import Placement, certified_pose
 from tamp.geometric.stability.stable_poses import stable_faces_of
-from tamp.geometric.streams.approach import approach_hits
-from tamp.geometric.streams.reachable_height import highest
 from tamp.geometric.streams.refusals import covered, narrowest, no_grasp, no_room
-from tamp.geometric.streams.sampling import sample_grasp
-from tamp.geometric.streams.too_flat import too_flat
 from tamp.plan.write import plan_text
 from tamp.planner.problem import load_problem
 from tamp.planner.solve import solve
 from tamp.stream import Rejection, RejectionKind
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.verification.verify import verify
-from tests.geometric.streams.scenes import call, problem_with, values
+from tests.geometric.streams.scenes import HIGH, problem_with, solved
 
 OPENING = 0.08
 
@@ -135,94 +131,6 @@ def test_a_sphere_is_refused_in_words_without_a_proof(tmp_path: Path) -> None:
     refused = refusal("sphere: 0.03", "cupboard_top", tmp_path)
     words = "a sphere rests on no stable face (thing)"
     assert refused == Rejection(words, given_up=True, kind=RejectionKind.UNSTABLE)
-
-
-def test_the_measured_height_is_reached_and_a_hand_higher_is_not(tmp_path: Path) -> None:
-    context = problem_with("can", tmp_path).context
-    height = highest(context, 0.0, -1.0)
-    assert height is not None and 1.2 < height < 1.7
-    foot = context.robot.T_base_arm.position
-
-    def level(z: float) -> bool:
-        for distance in np.arange(0.1, 0.9, 0.05):
-            T = np.eye(4)
-            T[:3, 0], T[:3, 1], T[:3, 2] = (0.0, 0.0, -1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0)
-            T[:3, 3] = (foot[0] + distance, 0.0, z)
-            if len(context.ik.solve(T, enough=1)):
-                return True
-        return False
-
-    assert level(height - 0.02) and not level(height + 0.05)
-
-
-HIGH = """
-domain: cupboard
-robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
-room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
-bodies:
-  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0], yaw: 90 deg}}
-  board: {{box: [0.8, 0.3, 0.03], at: [-1.6, 0.4, {height}], yaw: 90 deg, fixed: true}}
-  {thing}
-goal: (on cup {goal})
-"""
-
-
-def solved(text: str, folder: Path, seconds: float) -> tuple[Outcome, str]:
-    path = folder / "scene.yaml"
-    path.write_text(text, encoding="utf-8")
-    solution = solve(load_problem(path), max_time=seconds)
-    return solution.outcome, "\n".join(solution.explanation)
-
-
-@pytest.mark.parametrize("height", [1.6, 2.4])
-def test_too_high_says_to_where_the_hand_reaches(height: float, tmp_path: Path) -> None:
-    thing = "cup: {box: [0.05, 0.05, 0.1], on: board, at: [0.0, 0.0]}"
-    outcome, said = solved(HIGH.format(height=height, thing=thing, goal="table"), tmp_path, 2.0)
-    assert outcome in (Outcome.TIMEOUT, Outcome.INFEASIBLE)
-    assert "too high: the hand reaches to 1." in said and "here" in said
-
-
-def test_too_flat_is_said_of_a_wide_plate(tmp_path: Path) -> None:
-    thing = "cup: {box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.0]}"
-    outcome, said = solved(HIGH.format(height=1.0, thing=thing, goal="board"), tmp_path, 2.0)
-    assert (
-        outcome is Outcome.INFEASIBLE and "too flat to be grasped (6 mm tall, 15 cm wide)" in said
-    )
-
-
-@pytest.mark.parametrize(
-    ("thing", "flat"),
-    [
-        ("box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.0]", True),
-        ("box: [0.15, 0.15, 0.03], on: table, at: [0.0, 0.0], yaw: 30 deg", True),
-        ("cylinder: {radius: 0.1, height: 0.01}, on: table, at: [0.0, 0.0]", True),
-        ("cylinder: {radius: 0.042, height: 0.01}, on: table, at: [0.0, 0.0]", False),
-        ("box: [0.15, 0.078, 0.006], on: table, at: [0.0, 0.0]", False),
-        (
-            "box: [0.15, 0.15, 0.006], on: table, at: [0.0, 0.3]",
-            False,
-        ),  # it stands out over the edge
-    ],
-)
-def test_flat_is_proven_only_where_no_finger_gets_under_it(
-    thing: str, flat: bool, tmp_path: Path
-) -> None:
-    path = tmp_path / "scene.yaml"
-    path.write_text(
-        HIGH.format(height=1.0, thing=f"cup: {{{thing}}}", goal="board"), encoding="utf-8"
-    )
-    problem = load_problem(path)
-    found = too_flat(problem.context, "cup", problem.scene.bodies["cup"].pose)
-    assert (found is not None) is flat
-    if found is not None:
-        assert found.kind is RejectionKind.NO_GRASP
-        assert found.bodies and all(name in found.reason for name in found.bodies)
-    if flat:  # the same by brute force: the hand hits the table with every grasp that there is
-        tries = sample_grasp(problem.context, "cup", call())
-        grasps = values(tries, 60, most=400)
-        pose = problem.scene.bodies["cup"].pose
-        fixed = [(name, problem.scene.bodies[name].pose) for name in problem.scene.fixed]
-        assert all(approach_hits(problem.context, pose, grasp, fixed) for grasp in grasps)
 
 
 @pytest.mark.parametrize("others", [0, 12])

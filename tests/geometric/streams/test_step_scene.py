@@ -63,20 +63,6 @@ def test_bodies_stand_where_the_plan_has_put_them(name: str, seed: int) -> None:
     assert {count for _, _, count in watching.shown} == {16}
 
 
-def test_what_is_held_is_absent() -> None:
-    context = load_problem("four_objects").context
-    poses = {
-        name: context.scene.bodies[name].pose
-        for name in context.scene.movable
-        if name not in ("mug", "bowl")
-    }
-    poses["mustard"] = Pose((0.0, 0.0, 1.0))
-    scene = context.scene_at(poses, proposed="mug")
-    assert "bowl" not in scene.bodies and "table" in scene.bodies
-    assert scene.bodies["mug"].pose == context.scene.bodies["mug"].pose
-    assert scene.bodies["mustard"].pose.position[2] == 1.0
-
-
 @pytest.mark.parametrize(("sample", "place"), [(sample_on, "table"), (sample_inside, "cupboard_1")])
 def test_a_batch_is_drawn_at_once_and_used_in_its_order(
     sample: object, place: str, tmp_path: Path
