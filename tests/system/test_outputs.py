@@ -12,7 +12,6 @@ import signal
 import stat
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -27,7 +26,6 @@ from tamp.commands.view import main as view
 from tamp.errors import InputError
 from tamp.system.files import find_domain, find_problem
 from tamp.system.outputs import check_outputs, check_writable, locked_folder, write_whole
-from tamp.system.scratch import scratch_folder
 from tamp.system.terminal import spoken
 
 DOMAIN = (
@@ -291,27 +289,6 @@ def test_a_full_disk_is_one_error_in_every_command(
             r"[ /]out\.(json|png|html|npz): ", said[-1]
         ), said
     assert contents(folder) == before
-
-
-def test_folders_of_a_moment_are_tidied_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    dead = next(
-        number for number in range(4_000_000, 1, -1) if not Path(f"/proc/{number}").exists()
-    )
-    old = time.time() - 1000
-    for name, age in (
-        (f"tamp-{dead}-abc", old),
-        (f"tamp-{os.getpid()}-abc", old),
-        ("tamp-mine", old),
-    ):
-        (tmp_path / name).mkdir()
-        os.utime(tmp_path / name, (age, age))
-    (tmp_path / f"tamp-{dead}-young").mkdir()
-    with scratch_folder() as mine:
-        assert mine.is_dir()
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
-        [f"tamp-{os.getpid()}-abc", "tamp-mine", f"tamp-{dead}-young"]
-    )
 
 
 def test_a_folder_of_the_users_is_not_removed(

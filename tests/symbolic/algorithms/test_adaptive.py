@@ -20,7 +20,7 @@ from tamp.symbolic.algorithms.adaptive import (
     update_knowledge,
 )
 from tamp.symbolic.algorithms.binding.skeleton import Skeleton
-from tamp.symbolic.algorithms.planning_run import Run, search_plan, skeleton_of
+from tamp.symbolic.algorithms.planning_run import Run, search_plan
 from tamp.symbolic.algorithms.result import Outcome
 from tamp.system.deadline import Deadline, OutOfTime
 from tests.symbolic.algorithms.binding.shelf import planned
@@ -92,13 +92,6 @@ def test_facts_found_besides_change_the_task() -> None:
     run.streams.wild["pose", "tea", "tea"] = None
     update_knowledge(run, skeleton)
     assert run.optimistic is not before and ("pose", "tea", "tea") in run.knowledge.certified_facts
-
-
-def test_a_skeleton_that_is_found_again_is_the_same_one() -> None:
-    run, skeleton = planned("(put tea)")
-    found = search_plan(run)
-    assert found is not None and skeleton_of(run, found) is skeleton
-    assert run.effort.skeletons == len(run.skeletons) == 1
 
 
 @pytest.mark.parametrize(

@@ -76,13 +76,3 @@ def test_a_run_without_a_plan_yet_says_so() -> None:
     assert end_result(run, Outcome.TIMEOUT).explanation == ("no action plan was found yet",)
     why = Cause("why", CauseKind.REFUTED)
     assert end_result(run, Outcome.TIMEOUT, (why,)).explanation == ("why",)
-
-
-def test_values_that_the_replay_refuses_are_told_and_others_are_found() -> None:
-    run, skeleton = planned("(put tea)")
-    first = bind_skeleton(run, skeleton, 4, 100)
-    run.streams.certain.clear()
-    second = bind_skeleton(run, skeleton, 4, 100)
-    assert first is not None and second is not None and first != second
-    assert run.effort.refuted == 1
-    assert any("was not certified" in text for text in run.streams.warnings)

@@ -11,7 +11,6 @@ import pytest
 from tamp.errors import InputError
 from tamp.planner.pddl_only.problem import load_symbolic
 from tamp.planner.pddl_only.solve import solve_symbolic
-from tamp.symbolic.pddl.files import read_pddl
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.pddl.structs import Atom, Domain, Task
 
@@ -167,28 +166,6 @@ def test_two_actions_of_one_name_are_both_there(tmp_path: Path) -> None:
     assert sorted(plan) == ["saw b1", "saw~2 p1"]
 
 
-@pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "shift-jis"])
-def test_comments_in_any_encoding(encoding: str, tmp_path: Path) -> None:
-    comment = {"latin-1": "Möbel, gesägt", "cp1252": "“sawn” – gesägt", "shift-jis": "鋸"}[encoding]
-    file = tmp_path / "d.pddl"
-    file.write_bytes(
-        (f"; {comment}\n" + DOMAIN.replace("saw)", f"saw) ; {comment}", 1)).encode(encoding)
-    )
-    assert parse_domain(read_pddl(file), file).actions[0].name == "saw"
-
-
-def test_names_in_another_encoding_are_refused_at_their_place(tmp_path: Path) -> None:
-    file = tmp_path / "d.pddl"
-    file.write_bytes(DOMAIN.replace("cut", "säge").encode("latin-1"))
-    with pytest.raises(
-        InputError, match=r"d.pddl:4:17: cannot read it: it is not UTF-8 text. Save it as UTF-8"
-    ):
-        read_pddl(file)
-    file.write_bytes(DOMAIN.encode("utf-16"))
-    with pytest.raises(InputError, match="UTF-16"):
-        read_pddl(file)
-
-
 FEATURES = [
     ("domain", "(:constants)", "(@@:durative-action a)", "durative actions"),
     ("domain", "(:constants)", "(@@:process a)", "processes"),
@@ -337,20 +314,6 @@ def test_types_below_two_others_many_times_over() -> None:
     assert domain.is_a("a0", "b60")
     assert not domain.is_a("b60", "a0")
     assert time.process_time() - began < 15.0
-
-
-@pytest.mark.parametrize("name", ["/dev/zero", "/dev/null", ".", "a\x00b"])
-def test_what_is_no_file(name: str) -> None:
-    with pytest.raises(InputError):
-        read_pddl(Path(name))
-
-
-def test_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
-    import os
-
-    os.mkfifo(tmp_path / "d.pddl")
-    with pytest.raises(InputError, match="this is a pipe, no PDDL file"):
-        read_pddl(tmp_path / "d.pddl")
 
 
 def test_a_contradiction_at_the_start() -> None:

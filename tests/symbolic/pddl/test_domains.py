@@ -28,23 +28,6 @@ def test_declarations(domain: Domain) -> None:
     assert domain.fluent_predicates == {"at-base", "at-pose", "holding", "hand-empty"}
 
 
-def test_types_form_a_hierarchy(domain: Domain) -> None:
-    assert domain.is_a("movable", "body")
-    assert domain.is_a("movable", "object")
-    assert not domain.is_a("body", "movable")
-    assert domain.fits(("fixed", "surface"), ("surface",))
-    assert not domain.fits(("movable",), ("surface", "container"))
-
-
-def test_a_type_may_stand_below_several() -> None:
-    domain = parse_domain(
-        "(define (domain d) (:types table - (either body surface) body surface - object))"
-    )
-    assert domain.is_a("table", "body")
-    assert domain.is_a("table", "surface")
-    assert not domain.is_a("surface", "table")
-
-
 def test_rules_take_their_types_from_the_predicate(domain: Domain) -> None:
     on = domain.derived[0]
     assert on.parameters == (Parameter("?o", ("body",)), Parameter("?s", ("surface",)))

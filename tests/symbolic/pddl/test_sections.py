@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from tamp.errors import InputError
-from tamp.symbolic.pddl.features import FEATURES, lacking, sections, unsupported
 from tamp.symbolic.pddl.nodes import Symbol
 from tamp.symbolic.pddl.sections import items_of, keyword_values, read_sections, single
 from tamp.symbolic.pddl.sexpr import read
@@ -105,14 +104,3 @@ def test_keywords_have_one_value_each_in_any_order() -> None:
 def test_wrong_pairs(text: str, words: str) -> None:
     with pytest.raises(InputError, match=words):
         values(text)
-
-
-def test_features_are_named_as_the_user_wrote_them() -> None:
-    assert unsupported("always") == "'always' is not supported: tamp has no trajectory constraints"
-    assert unsupported("always", "Always").startswith("'Always' is not supported")
-    assert (
-        lacking("(= a 3)", "numeric fluents")
-        == "'(= a 3)' is not supported: tamp has no numeric fluents"
-    )
-    assert ":process" in sections(()) and ":process" not in sections((":process",))
-    assert all(word.startswith(":") and word in FEATURES for word in sections(()))

@@ -28,53 +28,6 @@ def test_goal(domain: Domain, objects: Objects) -> None:
     assert goal == And((Atom("on", ("mug", "table")), Not(Atom("hand-empty", ()))))
 
 
-def test_objects_are_named_as_their_owner_writes_them(domain: Domain, objects: Objects) -> None:
-    assert parse_goal("(ON box TABLE)", domain, objects) == Atom("on", ("Box", "table"))
-    with pytest.raises(InputError, match="may mean any of several objects"):
-        parse_goal("(on box table)", domain, {**objects, "BOX": ("movable",)})
-    assert parse_goal("(on BOX table)", domain, {**objects, "BOX": ("movable",)}) == Atom(
-        "on", ("BOX", "table")
-    )
-
-
-@pytest.mark.parametrize(
-    ("marked", "message"),
-    [
-        (
-            "(on mug @@mug)",
-            "'mug' is a movable, not a surface. Choices: depot, table, cupboard_top",
-        ),
-        ("(on mug @@shelf)", "'shelf' is a container, not a surface"),
-        (
-            "(on @@cupboard_top table)",
-            "'cupboard_top' is a surface, not a body. Choices: depot, mug, Box, table",
-        ),
-        (
-            "(on mug @@tabel)",
-            "unknown object 'tabel'. Choices: depot, table, cupboard_top. Did you mean 'table'?",
-        ),
-        ("(at-base @@mug)", "'mug' is a movable, not a base-conf; there is none"),
-        ("@@(on mug)", "'on' takes 2 arguments, found 1. Its form is (on ?o ?s)"),
-        ("(and\n  (@@onn mug table))", "unknown predicate 'onn'"),
-        ("(on @@?x table)", "unknown variable '?x'"),
-        ("(exists (?x - @@movabel) (on ?x table))", "unknown type 'movabel'"),
-        ("@@(on mug table", "never closed"),
-        ("(on mug table)@@)", "closes nothing"),
-        ("(on mug table) @@(on Box table)", "expected the end of the text"),
-        ("(@@increase (total-cost) 1)", "belongs into an effect"),
-        ("(@@preference p (on mug table))", "'preference' is not supported"),
-        ("@@on", "expected a condition"),
-        ("(@@(on mug table))", "expected a predicate or one of and, or, not"),
-        ("@@", "empty: expected one condition"),
-        ("(on @@(mug) table)", "expected a variable or an object, found '(mug)'"),
-    ],
-)
-def test_wrong_goal(
-    marked: str, message: str, domain: Domain, objects: Objects, raises_at: RaisesAt
-) -> None:
-    raises_at(lambda text: parse_goal(text, domain, objects, "p.yaml"), marked, message)
-
-
 def test_places_in_the_file_around_a_goal(domain: Domain, objects: Objects) -> None:
     with pytest.raises(InputError, match=r"^p\.yaml:18:15: 'mug' is"):
         parse_goal("(on mug mug)", domain, objects, "p.yaml", line_offset=17, column_offset=6)

@@ -7,7 +7,6 @@ from random import Random
 import pytest
 
 from benchmarks.classical_domains import GENERATORS
-from tamp.errors import InputError
 from tamp.symbolic.pddl.parser import parse_domain, parse_task
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.plan_trace import trace
@@ -53,10 +52,3 @@ def test_small_tasks_are_solved_and_optimally(name: str) -> None:
             )
             solved += 1
     assert solved >= 4
-
-
-def test_an_unknown_heuristic_among_several_is_refused() -> None:
-    domain, problem = GENERATORS["gripper"](1, Random(0))
-    instantiated = instantiate(parse_task(problem, parse_domain(domain)))
-    with pytest.raises(InputError, match=r"unknown heuristic 'landmark'.*Did you mean 'landmarks'"):
-        search(instantiated, search="greedy", heuristic="ff+landmark")

@@ -81,6 +81,7 @@ class Packed(NamedTuple):
     r: Relaxed
     x: Scratch
     space: Space
+    arena: Arena
 
     def write(self, at: int, state: State | Iterable[Fact]) -> State:
         """Write a state into the array; return its bits."""
@@ -114,4 +115,4 @@ def packed(
     space, ints, reals = arena.begin(t, r, rooms)
     ints[: basics.SIZES + 4 * kinds] = 0
     reals[:kinds] = 0.0
-    return Packed(s, relaxation, ints, reals, t, r, x, space)
+    return Packed(s, relaxation, ints, reals, t, r, x, space, arena)

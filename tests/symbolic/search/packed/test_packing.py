@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from random import Random
 from typing import Any
 
 import pytest
@@ -168,3 +169,20 @@ def test_landmarks_with_weights_and_what_they_need() -> None:
     assert made.ints[r.mark_absent : r.mark_absent + 3].tolist() == [0, 0, 0]
     assert [row(made, r.mark_starts, k, r.mark_needs) for k in range(3)] == [[], [(0,)], [(1,)]]
     assert packed(task(operators, "g", "a")).r.marks == 0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_words_are_those_of_the_state(seed: int) -> None:
+    rng = Random(seed)
+    one, other = (
+        rng.getrandbits(200) & rng.getrandbits(200),
+        rng.getrandbits(200) & rng.getrandbits(130),
+    )
+    rebuilt = [0, 0]
+    for w, a, b in pairs_of(one, other):
+        for k, word in enumerate((a, b)):
+            assert -(1 << 63) <= word < 1 << 63
+            rebuilt[k] |= (word & (1 << 64) - 1) << 64 * w
+    assert rebuilt == [one, other]
+    assert sum((word & (1 << 64) - 1) << 64 * w for w, word in enumerate(words_of(one, 4))) == one
+    assert signed((1 << 64) - 1) == -1

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-from dataclasses import replace
-from pathlib import Path
 from random import Random
 
 import pytest
@@ -16,7 +13,6 @@ from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.symbolic.search.packed import restarts, selection
 from tamp.symbolic.search.packed import search as packed_search
-from tamp.symbolic.search.packed.packing import pairs_of, signed, words_of
 from tamp.symbolic.search.search import Reason, SearchResult, search
 from tests.symbolic.search.interpreter import Interpreter
 from tests.symbolic.search.test_prices import instances, random_prices
@@ -157,49 +153,6 @@ def test_audits_and_limits_are_kept(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch, instantiated, {}, search="wastar", heuristic="landmarks", audit=audit
     )
     assert found.expanded == 500 and found.plan is None and asked
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_words_are_those_of_the_state(seed: int) -> None:
-    rng = Random(seed)
-    one, other = (
-        rng.getrandbits(200) & rng.getrandbits(200),
-        rng.getrandbits(200) & rng.getrandbits(130),
-    )
-    rebuilt = [0, 0]
-    for w, a, b in pairs_of(one, other):
-        for k, word in enumerate((a, b)):
-            assert -(1 << 63) <= word < 1 << 63
-            rebuilt[k] |= (word & (1 << 64) - 1) << 64 * w
-    assert rebuilt == [one, other]
-    assert sum((word & (1 << 64) - 1) << 64 * w for w, word in enumerate(words_of(one, 4))) == one
-    assert signed((1 << 64) - 1) == -1
-
-
-def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(sys.modules, "tamp.symbolic.search.packed.compiled", raising=False)
-    for kept, enough in ((False, selection.COMPILE_THRESHOLD), (True, selection.LOAD_THRESHOLD)):
-        fresh = replace(selection.THRESHOLD, entries=0, enough=None)
-        monkeypatch.setattr(selection, "THRESHOLD", fresh)
-        monkeypatch.setattr(selection, "compiled_before", lambda kept=kept: kept)
-        assert not selection.pays(enough)
-        assert selection.pays(1)
-
-
-def test_only_what_was_made_of_these_sources_counts_as_compiled(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    (tmp_path / "__pycache__").mkdir()
-    for name in selection.SOURCES:
-        (tmp_path / f"{name}.py").write_text(name)
-    monkeypatch.setattr(selection, "FOLDER", tmp_path)
-    for name in selection.KEPT:
-        assert not selection.compiled_before()
-        (tmp_path / "__pycache__" / f"x.{name}_{selection.digest()}-7.py311.nbi").write_text("")
-    assert selection.compiled_before()
-    (tmp_path / f"{selection.SOURCES[0]}.py").write_text("another")
-    assert not selection.compiled_before()
 
 
 @pytest.mark.parametrize("heuristic", ["ff+landmarks", "ff"])

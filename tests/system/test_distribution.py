@@ -14,7 +14,7 @@ from packaging.requirements import Requirement
 import tamp
 from tamp.system.distribution import DISTRIBUTION, distribution_version, install_command
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = (
     "tamp",
     "grounding",
