@@ -1,11 +1,14 @@
-"""Situations made by hand: bodies of four shapes on a table."""
+"""Made by hand: situations of bodies of four shapes on a table, and committees of given intervals."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from grounding.relations.catalogue import catalogue
+from grounding.relations.committee import Committee
 from grounding.relations.situation import Situations
 from tamp.geometric.scene.pose import Array
 from tests.geometric.making import cuboid
@@ -35,3 +38,31 @@ def situation(
     support = np.array([[TOP, front, *middle, 0.6, 0.4]])
     counts = np.full(4, 8)
     return Situations(CORNERS, counts, HALF, INNER, shapes[None], R[None], p[None], support)
+
+
+def committee(
+    *members: Mapping[str, tuple[float, float]], arguments: int = 2, weights: Sequence[float] = (),
+    scores: Sequence[float] = (), zero: Mapping[str, float] | None = None, typical: Sequence[str] = (),
+    side: Sequence[int] = (), soft: float = 1.0,
+) -> Committee:  # fmt: skip
+    """Conjunctions of intervals by the keys of measures, each with the weight of the others."""
+    at = {one.key: column for column, one in enumerate(catalogue(arguments))}
+    used = sorted({at[key] for one in members for key in one}) or [0]
+    shape = (len(members), max([1, *map(len, members)]))
+    conditions = np.full(shape, -1)
+    low, high = np.full(shape, -np.inf), np.full(shape, np.inf)
+    for row, one in enumerate(members):
+        for place, (key, (least, most)) in enumerate(one.items()):
+            conditions[row, place] = used.index(at[key])
+            low[row, place], high[row, place] = least, most
+    middle = np.zeros(len(at))
+    for key, angle in (zero or {}).items():
+        middle[at[key]] = angle
+    count = len(typical)
+    return Committee(
+        arguments, np.array(used), middle, conditions, low, high, np.full(shape, soft),
+        np.array(weights or [1 / len(members)] * len(members)),
+        np.array(scores or [0.0] * len(members)),
+        np.array([at[key] for key in typical], dtype=np.int64), np.zeros(count), np.ones(count),
+        np.array(side or [0] * count, dtype=np.int64),
+    )  # fmt: skip

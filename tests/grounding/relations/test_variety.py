@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,9 @@ from benchmarks.relations.asking import told
 from benchmarks.relations.geometry import about_z, situations
 from benchmarks.relations.hand import shown
 from grounding.relations.demonstration_file import Demonstration, demonstrations_of
-from grounding.relations.situation import joined, situation_of
-from grounding.relations.variety import missing, unvaried
+from grounding.relations.situation import Situations, joined, situation_of
+from grounding.relations.variety import contradiction, missing, unvaried
+from tests.grounding.relations.made import BOX, THING, situation
 from tests.grounding.relations.shown import write_demos
 
 
@@ -68,3 +70,34 @@ def test_what_was_always_in_one_place_of_the_furniture_is_warned_of() -> None:
     s.p[:, 1, :2] = s.support[:, 2:4]
     found = dict(unvaried(s, np.ones(10, dtype=bool), ("a", "b")))
     assert found["place of 1"].startswith("b was always in the same place of the furniture")
+
+
+def things(*at: tuple[float, float, float]) -> Situations:
+    return joined([situation((THING, *one), (BOX, 0.0, 0.0, 0.0)) for one in at])
+
+
+def test_one_situation_with_both_labels_is_a_contradiction() -> None:
+    apart = things((0.2, 0.0, 0.0), (0.3, 0.0, 0.0), (0.2, 0.0, 0.0), (0.2001, 0.0002, 0.0))
+    holds = [True, False, False, False]
+    assert contradiction(apart, np.array(holds)) == (0, 2)
+    assert contradiction(apart, np.array([True, False, True, False])) is None
+    assert contradiction(apart.rows([0, 3]), np.array([True, False])) is None
+    larger = replace(apart, half=apart.half * np.where(np.arange(16) >= 8, 1.5, 1.0)[:, None])
+    assert contradiction(larger.rows([0, 2]), np.array([True, False])) is None
+
+
+@pytest.mark.parametrize(
+    ("yes", "no", "said"),
+    [
+        (10, 0, ["nothing shows where it does not hold: show about 10, best near misses"]),
+        (10, 4, ["only 4 show where it does not hold: show about 10, best near misses"]),
+        (4, 5, ["only 4 show where it holds: show about 10"]),
+        (5, 5, []),
+    ],
+)
+def test_labels_of_both_kinds_are_asked_for(yes: int, no: int, said: list[str]) -> None:
+    assert missing(np.arange(yes + no) < yes) == said
+
+
+def test_one_demonstration_alone_is_not_told_to_vary() -> None:
+    assert unvaried(things((0.2, 0.0, 0.0)), np.array([True]), ("a", "b")) == []
