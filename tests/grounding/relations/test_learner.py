@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,12 +13,16 @@ import pytest
 from benchmarks.relations.geometry import situations
 from benchmarks.relations.hand import shown
 from benchmarks.relations.measure import Case, accuracy, holding, measured
+from grounding.relations import learner as module
 from grounding.relations.demonstration_file import Demonstration, Label, demonstrations_of
 from grounding.relations.demonstration_text import BodyEntry, DemonstrationFile, write_demonstration
-from grounding.relations.learner import learn, trained
-from grounding.relations.situation import joined
+from grounding.relations.learner import HeldOut, _doubt, cross_validated, kinds_of, learn, trained
+from grounding.relations.situation import Situations, joined
 from tamp.errors import InputError
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Array, Pose
+from tamp.geometric.scene.scene import Box, Scene, Surface
+from tests.geometric.making import body, crate, scene, table
+from tests.grounding.relations.made import BOX, THING, situation
 from tests.grounding.relations.shown import write_demos
 
 
@@ -100,3 +107,72 @@ def test_a_capsule_that_stands_is_no_body_that_leans(tmp_path: Path) -> None:
         write_demonstration(tmp_path / f"{number}.yaml", DemonstrationFile(bodies, [label]))
     demos = list(demonstrations_of("standing", [tmp_path]))
     assert learn("standing", demos, np.random.default_rng(0)).generator.steady
+
+
+def shown_in(there: Scene, *names: str, source: str = "a.yaml:1:1") -> Demonstration:
+    return Demonstration(there, names, True, source)
+
+
+def test_each_argument_is_a_body_or_a_place_by_what_it_is_in_all() -> None:
+    cup, box = (body(name, Box((0.1, 0.1, 0.1)), (0.2, 0.1, 0.55)) for name in ("cup", "box"))
+    lamp = body("lamp", Box((0.1, 0.1, 0.1)), (0.4, 0.1, 0.55), movable=False)
+    there = scene(table(), crate(), cup, box, lamp)
+    names = ("cup", "box", "lamp", "table", "crate_inside")
+    kinds = ("movable", "movable", "fixed", "surface", "container")
+    assert kinds_of([shown_in(there, *names), shown_in(there, *names)]) == kinds
+    assert kinds_of([shown_in(there, "lamp")]) == ("movable",)  # it is what would be placed
+
+    tray = replace(box, surfaces=(Surface("box", "box", Pose(), (0.1, 0.1)),))
+    assert kinds_of([shown_in(scene(table(), cup, tray), "cup", "box")]) == ("movable", "movable")
+    other = [shown_in(there, "cup", "box"), shown_in(there, "cup", "lamp", source="b.yaml:7:1")]
+    said = r"argument 2 is a movable in a\.yaml:1:1, a fixed in b\.yaml:7:1"
+    with pytest.raises(InputError, match=said):
+        kinds_of(other)
+
+
+@pytest.mark.parametrize(
+    ("yes", "no", "right", "doubt"),
+    [
+        (10, 0, None, "shown only where it holds"),
+        (10, 3, None, "shown 10 \\+ 3 labels: show 4 of each kind"),
+        (10, 10, (0.9, 0.6), ""),
+        (10, 10, (0.9, 0.58), "right about 90 % of what holds and 58 % of what does not"),
+    ],
+)
+def test_a_classifier_is_doubted_by_what_it_was_shown_and_what_it_gets_wrong(
+    yes: int, no: int, right: tuple[float, float] | None, doubt: str
+) -> None:
+    held_out = None if right is None else HeldOut(*right, (), 10)
+    said = _doubt(np.arange(yes + no) < yes, held_out)
+    assert re.search(doubt, said) if doubt else said == ""
+
+
+@pytest.mark.parametrize(
+    ("yes", "no", "scenes", "asked"), [(3, 9, 12, 0), (9, 3, 12, 0), (4, 4, 2, 0), (4, 4, 8, 8)]
+)
+def test_parts_are_held_out_where_there_are_labels_of_both_kinds_and_scenes_enough(
+    yes: int, no: int, scenes: int, asked: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each scene is asked of a committee that saw none of its labels."""
+    held: list[int] = []
+    every = situation((THING, 0.2, 0.0, 0.0), (BOX, 0.0, 0.0, 0.0)).rows([0] * (yes + no))
+    every.p[:, 0, 0] += np.arange(yes + no)
+    holds, names = np.arange(yes + no) < yes, [str(n % scenes) for n in range(yes + no)]
+
+    def gathered(good: Situations, bad: Situations, rng: object) -> set[float]:
+        return {*np.concatenate([good.p, bad.p])[:, 0, 0].tolist()}
+
+    def fitted(seen: set[float]) -> SimpleNamespace:
+        def predict(test: Situations) -> Array:
+            held.extend(1 for x in test.p[:, 0, 0] if x not in seen)
+            return np.full(len(test), 0.9)
+
+        return SimpleNamespace(predict=predict)
+
+    monkeypatch.setattr(module, "gather", gathered)
+    monkeypatch.setattr(module, "fit", fitted)
+    found = cross_validated(every, holds, names, np.random.default_rng(0))
+    assert len(held) == asked and (found is None) is (asked == 0)
+    if found is not None:
+        assert (found.positive, found.negative, found.mean) == (1.0, 0.0, 0.5)
+        assert found.wrong == tuple(range(yes, yes + no)) and found.folds == scenes
