@@ -17,6 +17,9 @@ from tamp.system.compilation import njit
 FAR = 1.0
 """What is said where there is nothing around, metres."""
 
+SAME_PLACE = 1e-9
+"""Middles that are no farther apart have no line between them, metres."""
+
 
 class Obstacles:
     """Bodies that stand still, prepared for `separations`.
@@ -131,11 +134,13 @@ def _separate(own, box, poses, others, sizes, axes, spans, low, high, out):
             # the horizontal line between the centres
             x = (least[0] + most[0] - low[m, 0] - high[m, 0]) / 2
             y = (least[1] + most[1] - low[m, 1] - high[m, 1]) / 2
-            length = max(math.sqrt(x * x + y * y), 1e-9)
-            x, y = x / length, y / length
-            first, last = np.inf, -np.inf
-            for v in range(len(own)):
-                first = min(first, x * points[v, 0] + y * points[v, 1])
-            for v in range(sizes[m]):
-                last = max(last, x * others[m, v, 0] + y * others[m, v, 1])
-            out[n, m] = max(best, first - last)
+            length = math.sqrt(x * x + y * y)
+            if length > SAME_PLACE:
+                x, y = x / length, y / length
+                first, last = np.inf, -np.inf
+                for v in range(len(own)):
+                    first = min(first, x * points[v, 0] + y * points[v, 1])
+                for v in range(sizes[m]):
+                    last = max(last, x * others[m, v, 0] + y * others[m, v, 1])
+                best = max(best, first - last)
+            out[n, m] = best

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from grounding.relations.catalogue import catalogue, measure
+from grounding.relations.catalogue import measure
 from grounding.relations.evidence import SAME_SIZE
 from grounding.relations.measure_kernels import heading
 from grounding.relations.situation import Situations
@@ -40,17 +40,6 @@ def contradiction(situations: Situations, holds: NDArray[np.bool_]) -> tuple[int
         if holds[first] != holds[row]:
             return first, row
     return None
-
-
-def likeness(situations: Situations, row: int) -> Array:
-    """Return by how many resolutions each situation differs from one, at most, (n,)."""
-    listed = catalogue(situations.arguments)
-    values = measure(situations)
-    off = np.abs(values - values[row])
-    period = np.array([one.period for one in listed])
-    off = np.where(period > 0, np.minimum(off % np.maximum(period, 1e-9), period - off), off)
-    apart = np.array([one.cost < 5 for one in listed])
-    return (np.abs(off) / np.array([one.scale for one in listed]))[:, apart].max(axis=1)
 
 
 def unvaried(

@@ -64,6 +64,8 @@ def _interval(one: Measure, low: float, high: float, names: Sequence[str]) -> st
     numbers = [np.round(value * factor / step) * step + 0.0 for value in (low, high)]
     if one.least and (not math.isfinite(low) or numbers[0] <= 0):
         return f"{words}: at most {numbers[1]:g}{unit}"
+    if not math.isfinite(high):
+        return f"{words}: at least {numbers[0]:g}{unit}"
     return f"{words}: {numbers[0]:g} to {numbers[1]:g}{unit}"
 
 

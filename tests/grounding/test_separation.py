@@ -25,6 +25,8 @@ _ANGLE = st.floats(-math.pi, math.pi)
         (0, 0, 0.21, 0.01),
         (0.15, 0, 0, -0.05),
         (0.05, 0, 0.19, -0.01),
+        (0, 0, 0.15, -0.05),
+        (0, 0, 0, -0.2),  # no line between the middles says that they only touch
     ],
 )
 def test_upright_boxes_are_apart_by_the_gap_between_their_faces(

@@ -12,7 +12,6 @@ import pytest
 from tamp.commands.solve import BAD_INPUT, SOLVED, run
 from tamp.plan.write import plan_text
 from tamp.planner.optimize import improves, optimize
-from tamp.planner.parallel import solve_parallel
 from tamp.planner.problem import load_problem
 from tamp.planner.solution import Solution
 from tamp.verification.verify import verify
@@ -47,15 +46,6 @@ def test_the_improvements_repeat_as_far_as_both_runs_came() -> None:
         runs.append([step.duration for step in solution.improvements])
     both = min(map(len, runs))
     assert both and runs[0][:both] == runs[1][:both]
-
-
-def test_two_processes_improve_and_the_best_plan_of_both_is_kept() -> None:
-    told: list[Solution] = []
-    solution = solve_parallel(
-        load_problem("one_object"), jobs=2, max_time=4.0, improved=told.append
-    )
-    assert solution.solved and {plan.seed for plan in told} <= {0, 1000}
-    assert solution.duration == min(plan.duration for plan in told)
 
 
 def test_the_command_reports_each_improvement(

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from tamp.commands.solve import BAD_INPUT, SOLVED, run
-from tamp.planner.statistics_file import read_statistics
+from tamp.errors import InputError
+from tamp.planner.statistics_file import add_statistics, read_statistics
+from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.algorithms.experience.success_posterior import Posterior
 
 
@@ -76,3 +79,68 @@ def test_a_broken_file_is_one_error_and_stays(
     assert words in error and "s.json" in error and "Traceback" not in error
     assert (tmp_path / "s.json").read_text(encoding="utf-8") == text
     assert not (tmp_path / "plan.json").exists()
+
+
+def ran(calls: int, successes: int, seconds: float = 0.5) -> StreamStatistics:
+    made = StreamStatistics()
+    made.calls, made.successes, made.seconds = calls, successes, seconds
+    return made
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "s.json"
+
+
+def test_runs_add_up(file: Path) -> None:
+    assert read_statistics(file, "cupboard") == {}
+    add_statistics(file, "cupboard", {"ik": ran(10, 4), "never": ran(0, 0)})
+    total = add_statistics(file, "cupboard", {"ik": ran(5, 5, 1.0), "sample-on": ran(1, 0)})
+    assert total == {"ik": Posterior(9, 6, 1.5), "sample-on": Posterior(0, 1, 0.5)}
+    assert read_statistics(file, "cupboard") == total  # what was never called is not kept
+
+
+def test_streams_stand_in_order_whole_and_with_their_mean(file: Path) -> None:
+    add_statistics(file, "cupboard", {"b": ran(4, 3), "a": ran(1, 1)})
+    document = json.loads(file.read_text())
+    assert list(document["streams"]) == ["a", "b"]
+    assert document["streams"]["b"]["mean"] == pytest.approx(Posterior(3, 1).mean, abs=1e-6)
+    assert [path.name for path in file.parent.iterdir() if not path.name.startswith(".")] == [
+        "s.json"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            {"format": "other"},
+            "it is no 'tamp-statistics' file of version 1. Name another file, or delete this one",
+        ),
+        ({"version": 2}, "it is no 'tamp-statistics' file of version 1"),
+        ({"domain": "other"}, "its statistics are of domain 'other', not 'cupboard'"),
+        (
+            {"streams": {"a": {"successes": 1.5, "failures": 0, "seconds": 0}}},
+            "streams.a.successes: 1.5 is no whole",
+        ),
+        (
+            {"streams": {"a": {"successes": 1, "failures": 0, "seconds": -1}}},
+            "streams.a.seconds: -1 is less than 0",
+        ),
+        ({"streams": {"a": {"successes": 1}}}, "streams.a: 'failures' is missing"),
+    ],
+)
+def test_a_file_that_is_none_of_ours_is_refused_and_stays(
+    file: Path, change: dict[str, Any], words: str
+) -> None:
+    document = {
+        "format": "tamp-statistics",
+        "version": 1,
+        "domain": "cupboard",
+        "streams": {},
+        **change,
+    }
+    file.write_text(json.dumps(document))
+    with pytest.raises(InputError, match=words) as told:
+        add_statistics(file, "cupboard", {"ik": ran(1, 1)})
+    assert told.value.file == str(file) and json.loads(file.read_text()) == document

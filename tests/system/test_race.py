@@ -14,10 +14,6 @@ from typing import Any
 import pytest
 
 from tamp.errors import InputError
-from tamp.plan.write import plan_text
-from tamp.planner.parallel import solve_parallel
-from tamp.planner.problem import load_problem
-from tamp.planner.solve import solve
 from tamp.system.deadline import Deadline
 from tamp.system.race import SEED_STRIDE, RaceResult, Tell, member_seed, race
 
@@ -135,21 +131,6 @@ def test_the_runs_leave_even_when_the_one_who_started_them_is_killed() -> None:
     pids = [int(word) for word in done.stdout.split()]
     assert len(pids) == 3 and done.returncode == -signal.SIGKILL
     assert all(map(gone, pids))
-
-
-def test_whoever_wins_its_seed_makes_the_plan_again() -> None:
-    problem = load_problem("one_object")
-    won = solve_parallel(problem, jobs=2, seed=5, accept=lambda solution: solution.seed != 5)
-    assert won.solved and won.seed == member_seed(5, 1) == 5 + SEED_STRIDE
-    alone = solve(load_problem("one_object"), seed=won.seed)
-    assert (
-        plan_text(won).partition('"statistics"')[0] == plan_text(alone).partition('"statistics"')[0]
-    )
-
-
-def test_a_proof_of_infeasibility_is_an_answer() -> None:
-    solution = solve_parallel(load_problem("impossible_size"), jobs=2, max_time=30.0)
-    assert not solution.solved and "pitcher" in "\n".join(solution.explanation)
 
 
 def test_seeds_stay_in_range() -> None:

@@ -6,7 +6,7 @@ import copy
 import hashlib
 import itertools
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +17,11 @@ from tamp.geometric.loading.load import load_scene
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.engines import open_world
+from tamp.simulation.world import World
 from tamp.system.files import find_domain
 from tamp.verification.collision_sweep import Sweeper
+from tests.needs import INSTALLED
+from tests.verification.posts import ROBOT, ROOM
 
 PROBLEM = """\
 name: by_hand
@@ -254,3 +257,17 @@ def written(tmp_path: Path) -> Callable[[Any], Path]:
         return file
 
     return write
+
+
+@pytest.fixture(params=INSTALLED)
+def each_engine(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Asks each engine where none is named."""
+    monkeypatch.setattr("tamp.simulation.engines.default_engine", lambda: request.param)
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def world() -> Iterator[World]:
+    """The room with the post and the stick; who moves something puts it back."""
+    with open_world(ROOM, ROBOT) as made:
+        yield made

@@ -11,10 +11,7 @@ import numpy as np
 import pytest
 
 from benchmarks.engine_verdicts import SPOIL
-from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array
-from tamp.geometric.scene.scene import RobotStart, Room, Scene
-from tamp.simulation.engines import open_world
 from tamp.simulation.solid import Solid
 from tamp.simulation.world import World
 from tamp.verification import collision_sweep
@@ -110,45 +107,3 @@ def test_few_distances_are_asked_for(
     monkeypatch.setattr(Counting, "apart", lambda *_: False)
     assert verify(plan, engine=engine).states == states
     assert 0 < 2 * few < len(asked)
-
-
-@pytest.mark.parametrize("engine", INSTALLED)
-@pytest.mark.parametrize("name", ROBOTS)
-def test_frames_are_the_engines(name: str, engine: str, rng: np.random.Generator) -> None:
-    robot = ROBOTS[name]()
-    scene = Scene("s", {}, RobotStart(name, (0, 0, 0)), Room((-3, 3), (-3, 3)))
-    with open_world(scene, robot, name=engine) as world:
-        frames = LinkFrames(world, robot)
-        low, high = [-9.0, -9.0, -9.0], [9.0, 9.0, 9.0]
-        for arm in robot.arms:
-            low, high = [*low, *arm.lower, 0.0], [*high, *arm.upper, arm.opening]
-        rows = rng.uniform(low, high, (50, len(low)))
-        assert frames.measured
-        assert np.abs(frames(rows) - frames.engines(rows)).max() < 1e-5
-
-
-def test_frames_that_screws_do_not_give_are_asked_of_the_engine(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As of a finger that its joint moves along an arc."""
-    robot = ROBOTS["panda_mobile"]()
-    scene = Scene("s", {}, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))
-    with open_world(scene, robot) as world:
-        ask = world.link_frames
-        set_robot, last = world.set_robot, [0.0]
-
-        def bent(base: Any, arm: Any, opening: float, number: int = 0) -> None:
-            last[0] = opening
-            set_robot(base, arm, opening, number)
-
-        def frames() -> Array:
-            found = ask()
-            found[-1, 2] += last[0] ** 2
-            return found
-
-        monkeypatch.setattr(world, "set_robot", bent)
-        monkeypatch.setattr(world, "link_frames", frames)
-        made = LinkFrames(world, robot)
-        rows = rng.uniform(-1.0, 1.0, (5, 11))
-        assert not made.measured
-        assert np.array_equal(made(rows), made.engines(rows))

@@ -2,74 +2,16 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
-from tamp.geometric.loading.robots import ROBOTS
-from tamp.geometric.scene.pose import Array, Pose
-from tamp.geometric.scene.scene import Body, Box, Part, RobotStart, Room, Scene
-from tamp.simulation.engines import open_world
+from tamp.geometric.scene.pose import Pose
 from tamp.simulation.world import World
 from tamp.verification.collision_sweep import CollisionFindings, ExpectedContacts, Sweeper
 from tamp.verification.execution_state import Held
-from tamp.verification.trajectory_sampling import JOINT_STEP_RAD, POINT_STEP_M, Sampler
-
-ROBOT = ROBOTS["panda_mobile"]()
-POST = Body("post", (Part(Box((0.02, 0.02, 2.0))),), Pose((2.0, 0.0, 1.0)), movable=False)
-STICK = Body("stick", (Part(Box((0.02, 0.02, 0.3))),), Pose((-2.0, 0.0, 0.15)), movable=True)
-
-
-@pytest.fixture(scope="module")
-def world() -> Iterator[World]:
-    bodies = {body.name: body for body in (POST, STICK)}
-    scene = Scene("s", bodies, RobotStart("panda_mobile", (0, 0, 0)), Room((-3, 3), (-3, 3)))
-    with open_world(scene, ROBOT) as made:
-        yield made
-
-
-def row(x: float = 0.0, y: float = 0.0, yaw: float = 0.0, arm: Array | None = None) -> Array:
-    return np.array([x, y, yaw, *(ROBOT.home if arm is None else arm), 0.04])
-
-
-def test_samples_are_close_together(world: World, rng: np.random.Generator) -> None:
-    sampler = Sampler(world, ROBOT)
-    held = (Held("stick", Pose((0.0, 0.0, 0.1)).matrix),)
-    tried = 0
-    for _ in range(5):
-        arms = rng.uniform(ROBOT.lower, ROBOT.upper, (2, 7))
-        ends = np.array(
-            [
-                row(
-                    float(rng.uniform(-1, 1)),
-                    float(rng.uniform(-1, 1)),
-                    float(rng.uniform(-3, 3)),
-                    arm,
-                )
-                for arm in arms
-            ]
-        )
-        motion = sampler.sampled(ends, np.array([0.0, 1.0]), held)
-        rows, times = motion.rows, motion.times
-        assert np.allclose(rows[[0, -1]], ends) and (np.diff(times) > 0).all()
-        assert np.abs(np.diff(rows[:, 2:10], axis=0)).max() <= JOINT_STEP_RAD * (1 + 1e-6)
-        tips = motion.frames[-1] @ np.array([0.0, 0.0, 0.15, 1.0])
-        assert np.linalg.norm(np.diff(tips, axis=0), axis=1).max() <= POINT_STEP_M * (1 + 1e-6)
-        tried += len(rows)
-    assert tried > 1000
-
-
-def test_frames_of_a_driving_base_are_the_engines(world: World) -> None:
-    sampler = Sampler(world, ROBOT)
-    ends = np.array([row(), row(1.0, 0.5, 2.0)])
-    motion = sampler.sampled(ends, np.array([0.0, 1.0]), ())
-    rows = motion.rows
-    world.set_robot(rows[70, :3], rows[70, 3:10], rows[70, 10])
-    for name, frame in zip(world.links, motion.frames[:, 70], strict=True):
-        assert np.allclose(world.link_poses()[name], frame, atol=1e-6)
+from tests.verification.posts import ROBOT, STICK, row
 
 
 def test_a_thin_post_cannot_be_jumped(world: World) -> None:
@@ -150,21 +92,6 @@ def test_a_sweep_ends_when_it_has_looked_enough(world: World, rng: np.random.Gen
     sweeper.sweep(rows, np.arange(500.0), (), findings)
     assert findings.full
     assert findings.states < 30_000
-
-
-def test_pieces_of_a_motion_join_to_the_motion(world: World, rng: np.random.Generator) -> None:
-    sampler = Sampler(world, ROBOT)
-    yaws = np.cumsum(rng.uniform(-40.0, 40.0, 200))
-    rows = np.array([row(float(rng.uniform(-2, 2)), 0.0, yaw) for yaw in yaws])
-    times = np.arange(200.0)
-    pieces = list(sampler.pieces(rows, times))
-    assert len(pieces) > 3
-    for (before, at), (after, then) in itertools.pairwise(pieces):
-        assert np.allclose(before[-1], after[0])
-        assert at[-1] == pytest.approx(then[0])
-    assert np.allclose(pieces[-1][0][-1, :2], rows[-1, :2])
-    turned = pieces[-1][0][-1, 2] - rows[-1, 2]
-    assert math.sin(turned / 2) == pytest.approx(0.0, abs=1e-9)
 
 
 def test_only_a_pair_that_lay_in_each_other_at_the_start_may_stay_so(world: World) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -167,17 +166,6 @@ def test_before_it_is_carried_out_a_plan_has_to_keep_its_ranges(robot: Robot) ->
         match=r"2 move, 14.00 s: base y is out of range: 1.5, 0.5 over: the robot cannot",
     ):
         check_ranges(plan_of(("move", (), [fine]), ("move", (), [out])), robot, ROOM)
-
-
-def test_the_makers_table_is_within_itself_and_no_planners(robot: Robot) -> None:
-    assert limits_of(robot) is PANDA_MOBILE
-    assert all(low < high for low, high in zip(PANDA_MOBILE.lower, PANDA_MOBILE.upper, strict=True))
-    assert all(map(lambda pair: pair[0] <= pair[1], itertools.chain(
-        zip(robot.velocity, PANDA_MOBILE.velocity, strict=True),
-        zip(robot.acceleration, PANDA_MOBILE.acceleration, strict=True),
-        zip(PANDA_MOBILE.lower, robot.lower, strict=True),
-        zip(robot.upper, PANDA_MOBILE.upper, strict=True),
-    )))  # fmt: skip
 
 
 @pytest.mark.parametrize("count", [41, 401, 4001])

@@ -1,4 +1,6 @@
-"""Demonstrations for the tests: a cup left of a plate, seen from the front of a table."""
+"""Demonstrations for the tests: a cup left of a plate, seen from the front of a table; and bodies of
+each kind of shape.
+"""
 
 from __future__ import annotations
 
@@ -88,3 +90,25 @@ def write_demos(
             **fixed,
         )
     return folder
+
+
+BODIES = {
+    "desk": BodyEntry(
+        {"furniture": "table", "size": [1.2, 0.7, 0.72]}, Pose.from_xyz_yaw(1.5, 0.0, 0.0, 0.4)
+    ),
+    "cup": BodyEntry(
+        {"cylinder": {"radius": 0.04, "height": 0.1}, "colour": "red"}, Pose((1.5, 0.1, 0.771))
+    ),
+    "plate": BodyEntry(
+        {"box": [0.2, 0.2, 0.02], "front": "90 deg"}, Pose.from_xyz_yaw(1.4, -0.2, 0.731, 1.0)
+    ),
+    "bowl": BodyEntry(
+        {"mesh": "objects/bowl.obj", "fixed": True},
+        Pose.from_xyz_rpy((1.9, 0.2, 0.9), (1.0, 0.2, 0.0)),
+    ),
+}
+
+
+def everything(*labels: Label) -> DemonstrationFile:
+    """All of `BODIES`, with what is said of them."""
+    return DemonstrationFile(BODIES, labels, "A cup\nbeside a plate.")

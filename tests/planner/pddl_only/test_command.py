@@ -13,50 +13,12 @@ import pytest
 from tamp.commands.solve import BAD_INPUT, NO_PLAN, SOLVED, run
 from tamp.commands.verify import main as judge
 from tamp.errors import InputError
-from tamp.planner.pddl_only.parallel import portfolio
 from tamp.symbolic.pddl.structs import Task
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.operators import InstantiatedTask
 from tamp.system.deadline import STANDSTILL
 from tamp.verification.verify import verify
-
-DOMAIN = """\
-(define (domain errands)
-  (:requirements :adl :derived-predicates :action-costs)
-  (:types place thing - object car truck - thing)
-  (:constants home - place)
-  (:predicates (at ?t - thing ?p - place) (road ?a ?b - place) (broken ?t - thing) (served ?p - place)
-    (linked ?a ?b - place) (unused ?t - thing))
-  (:functions (total-cost) - number (length ?a ?b - place) - number)
-  (:derived (linked ?a ?b - place) (or (road ?a ?b) (exists (?c - place) (and (road ?a ?c) (linked ?c ?b)))))
-  (:action drive
-    :parameters (?t - thing ?a ?b - place)
-    :precondition (and (at ?t ?a) (road ?a ?b) (not (broken ?t)) (imply (= ?b home) (served ?a)))
-    :effect (and (at ?t ?b) (not (at ?t ?a)) (when (not (linked ?b home)) (broken ?t))
-                 (forall (?p - place) (when (= ?p ?b) (served ?p))) (increase (total-cost) (length ?a ?b))))
-  (:action tow
-    :parameters (?t - (either car truck)) :precondition (broken ?t)
-    :effect (and (not (broken ?t)) (increase (total-cost) 10))))
-"""
-
-PROBLEM = """\
-(define (problem round)
-  (:domain errands)
-  (:objects a b c - place van - truck)
-  (:init (at van home) (road home a) (road a home) (road a b) (road b c) (road home b) (road b home)
-         (= (length home a) 3) (= (length a home) 3) (= (length a b) 1) (= (length b c) 1)
-         (= (length home b) 5) (= (length b home) 2) (= (total-cost) 0))
-  (:goal (and (exists (?p - place) (and (served ?p) (not (linked ?p home)))) (not (broken van))))
-  (:metric minimize (total-cost)))
-"""
-
-
-@pytest.fixture
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (tmp_path / "d.pddl").write_text(DOMAIN, encoding="utf-8")
-    (tmp_path / "p.pddl").write_text(PROBLEM, encoding="utf-8")
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+from tests.planner.pddl_only.texts import DOMAIN, PROBLEM
 
 
 def test_an_optimal_plan_is_found_shown_written_and_judged(
@@ -209,76 +171,9 @@ def test_the_judge_refuses_what_it_cannot_read(files: Path) -> None:
     assert verify(plan, problem="elsewhere.pddl").holds
 
 
-def test_several_searches_at_a_time_give_the_plan_of_one(
-    files: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert run(["d.pddl", "p.pddl", "--jobs", "3", "--json", "--verify"]) == SOLVED
-    document = json.loads(capsys.readouterr().out)
-    named = document["statistics"]
-    assert (named["search"], named["heuristic"]) in portfolio(None, None, 3)
-    again = [
-        "d.pddl",
-        "p.pddl",
-        "--search",
-        named["search"],
-        "--heuristic",
-        named["heuristic"],
-        "--json",
-    ]
-    assert run(again) == SOLVED
-    assert json.loads(capsys.readouterr().out)["actions"] == document["actions"]
-
-
-def test_searches_beside_an_optimal_one_are_optimal(
-    files: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    pairs = portfolio("astar", None, 9)
-    assert (
-        pairs[0] == ("astar", "lmcut")
-        and len(pairs) > 2
-        and all(search == "astar" for search, _ in pairs)
-    )
-    assert run(["d.pddl", "p.pddl", "--jobs", "2", "--search", "astar"]) == SOLVED
-    assert "(optimal)" in capsys.readouterr().out
-
-
 def test_a_number_of_jobs_is_positive(files: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["d.pddl", "p.pddl", "--jobs", "0"]) == BAD_INPUT
     assert "--jobs: between 1 and" in capsys.readouterr().err
-
-
-SHOP = """\
-(define (domain shop)
-  (:requirements :strips :typing :action-costs)
-  (:types item)
-  (:predicates (have ?i - item) (ticket))
-  (:functions (total-cost) - number)
-  (:action buy-ticket :effect (and (ticket) (increase (total-cost) 5)))
-  (:action get :parameters (?i - item) :precondition (ticket) :effect (and (have ?i) (increase (total-cost) 1)))
-  (:action take :parameters (?i - item) :effect (and (have ?i) (increase (total-cost) 3))))
-"""
-
-SHOPPING = """\
-(define (problem shopping) (:domain shop) (:objects a b c d - item) (:init (= (total-cost) 0))
-  (:goal (and (have a) (have b) (have c) (have d))) (:metric minimize (total-cost)))
-"""
-
-
-def test_cheaper_plans_are_looked_for_until_one_is_the_cheapest(
-    files: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (files / "shop.pddl").write_text(SHOP, encoding="utf-8")
-    (files / "shopping.pddl").write_text(SHOPPING, encoding="utf-8")
-    assert run(["shop.pddl", "shopping.pddl", "--optimize", "--json"]) == SOLVED
-    document = json.loads(capsys.readouterr().out)
-    steps = document["optimization"]
-    assert document["optimal"] and document["cost"] == steps["bound"] == 9.0 and steps["gap"] == 0.0
-    costs = [step["cost"] for step in steps["improvements"]]
-    assert costs[-1] == 9.0 and costs == sorted(set(costs), reverse=True)
-    assert run(["shop.pddl", "shopping.pddl", "--optimize"]) == SOLVED
-    lines = capsys.readouterr().out.splitlines()
-    assert any("no plan below" in line and "gap" in line for line in lines)
-    assert any("cost 9 (optimal)" in line for line in lines)
 
 
 def test_kernels_that_are_compiled_are_told_of_and_are_no_time_of_the_search(

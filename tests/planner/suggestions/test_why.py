@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from benchmarks.infeasible import named
-from benchmarks.infeasible_scenes import KINDS
 from tamp.commands.solve import NO_PLAN, SOLVED, run
 from tamp.planner.problem import Problem, load_problem
 from tamp.planner.solution import Action, Solution
@@ -18,15 +17,7 @@ from tamp.planner.suggestions.why import Suggestions, suggest_changes
 from tamp.planner.timed_trajectories import Trajectory
 from tamp.symbolic.algorithms.cause import Cause, CauseKind
 from tamp.symbolic.algorithms.result import Outcome
-
-BY_NAME = {make.__name__: (number, make) for number, make in enumerate(KINDS)}
-
-
-def written(kind: str, folder: Path, seed: int = 0) -> Path:
-    number, make = BY_NAME[kind]
-    path = folder / f"{kind}.yaml"
-    path.write_text(make(np.random.default_rng((number, seed))).text, encoding="utf-8")
-    return path
+from tests.planner.suggestions.infeasible import BY_NAME, written
 
 
 @pytest.mark.parametrize(
@@ -65,20 +56,6 @@ def test_nothing_is_asked_when_there_is_a_plan(
 ) -> None:
     assert run(["one_object", "--why", "--json", "--out", str(tmp_path / "plan.json")]) == SOLVED
     assert "why" not in json.loads(capsys.readouterr().out)
-
-
-@pytest.mark.parametrize("kind", BY_NAME)
-def test_every_change_makes_one_thing_different(kind: str, tmp_path: Path) -> None:
-    problem = load_problem(written(kind, tmp_path))
-    for change in changes(problem):
-        assert (change.scene is None) != (change.goal is None)
-        assert change.about and change.text
-        if change.scene is not None:
-            ours, theirs = problem.scene.bodies, change.scene.bodies
-            different = {
-                name for name in ours if name not in theirs or theirs[name] is not ours[name]
-            }
-            assert different & set(change.about) and theirs.keys() <= ours.keys()
 
 
 @pytest.mark.parametrize("kind", ["start_too_high", "too_wide", "fixed", "two_places"])

@@ -10,10 +10,9 @@ import pytest
 
 from benchmarks.relations.geometry import situations
 from benchmarks.relations.hand import shown
-from benchmarks.relations.relations import RELATIONS
 from grounding.relations.catalogue import catalogue, measure
-from grounding.relations.null_hypothesis import about_z, chance
-from grounding.relations.situation import Situations, joined, situation_of
+from grounding.relations.null_hypothesis import about_z
+from grounding.relations.situation import Situations, situation_of
 from tamp.geometric.loading.load import load_scene
 
 SCENE = """
@@ -100,34 +99,3 @@ def moved_by(s: Situations, yaw: float, by: np.ndarray) -> Situations:
     support[:, 1] += yaw
     support[:, 2:4] = s.support[:, 2:4] @ R[:2, :2].T + by[:2]
     return replace(s, R=R @ s.R, p=s.p @ R.T + by, support=support)
-
-
-@pytest.mark.parametrize("arguments", [1, 2, 3, 4])
-def test_the_catalogue_and_the_kernel_agree(arguments: int) -> None:
-    rng = np.random.default_rng(arguments)
-    s = situations(shown("between", 5, True, rng))
-    rows = np.resize(np.arange(3), arguments)
-    s = replace(
-        s,
-        shape=s.shape[:, rows],
-        R=s.R[:, rows],
-        p=s.p[:, rows] + rng.uniform(0, 1, (5, arguments, 3)),
-    )
-    keys = [one.key for one in catalogue(arguments)]
-    assert len({*keys}) == len(keys)
-    values = measure(s)
-    assert values.shape == (5, len(keys)) and np.isfinite(values).all()
-    out = np.full((5, len(keys) + 1), 7.0)
-    from grounding.relations.measure_kernels import measure_rows
-
-    measure_rows(s.corners, s.counts, s.half, s.inner, s.shape, s.R, s.p, s.support, out)
-    assert (out[:, -1] == 7.0).all() and (out[:, :-1] == values).all()
-
-
-def test_chance_varies_what_demonstrations_may_not() -> None:
-    s = situations(shown("left_of_front", 10, True, np.random.default_rng(0), lazy="all"))
-    made = chance(s, np.random.default_rng(1), 500)
-    assert np.ptp(made.support[:, 0]) > 0.8 and np.ptp(made.support[:, 1]) > 4
-    assert np.ptp(made.half[made.shape[:, 0]], axis=0).min() > 0.02
-    assert len(joined([s, made])) == 510 and RELATIONS["left_of_front"].arguments == 2
-    assert np.allclose(np.linalg.det(made.R), 1.0)
