@@ -119,6 +119,8 @@ def search(
         return made
 
     def packed(run: SearchSpace) -> Plan | None:
+        if deadline is not None and deadline.passed:  # compiled loops look only now and then
+            raise SearchLimitReached(Reason.TIME)
         if search == "greedy" and limit is None:
             return greedy_with_restarts(run, names, seed)
         return packed_lazy(run, names, math.inf if search == "greedy" else weight)

@@ -19,7 +19,7 @@ from tamp.symbolic.search.operators import (
     Operator,
 )
 from tamp.symbolic.search.search import Reason, search, split_heuristics, unreachable
-from tests.planner.pddl_only.test_command import SHOP, SHOPPING
+from tests.planner.pddl_only.texts import SHOP, SHOPPING
 
 TASK = instantiate(parse_task(SHOPPING, parse_domain(SHOP)))
 CHEAPEST = 9.0
