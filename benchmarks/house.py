@@ -148,6 +148,37 @@ def untested() -> list[str]:
     ]
 
 
+DECISIONS = (
+    ast.If, ast.IfExp, ast.Match, ast.BoolOp, ast.Compare, ast.While, ast.For, ast.comprehension, ast.Try,
+)  # fmt: skip
+"""What a function decides something by."""
+
+
+def decides(file: Path) -> bool:
+    """Check that a function of a module holds a branch, a loop or a comparison."""
+    return any(
+        isinstance(inner, DECISIONS)
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        for inner in ast.walk(node)
+    )
+
+
+def file_of_tests(module: str) -> Path:
+    """Return where the tests of a module lie: tests/ mirrors tamp/, and grounding/ in a folder of that name."""
+    words = module.removeprefix("tamp.").split(".")
+    return (ROOT / "tests").joinpath(*words[:-1], f"test_{words[-1]}.py")
+
+
+def without_test_file() -> list[str]:
+    """Return modules that decide something and have no test file of their name in the mirrored folder."""
+    return [
+        name
+        for name, file in names_of_modules().items()
+        if file.stem not in ("__init__", "__main__") and decides(file) and not file_of_tests(name).is_file()
+    ]
+
+
 def lines_of(*folders: str) -> int:
     return sum(len(file.read_text(encoding="utf-8").splitlines()) for file in sources(*folders))
 
@@ -172,6 +203,7 @@ def measures() -> list[Measure]:
             len(verbs) / len(docstrings), ">= 0.99",
         ),
         Measure("modules that no test asks directly", len(untested()), "<= 3"),
+        Measure("modules that decide something without a test file of their name", len(without_test_file()), "<= 0"),
         Measure("longest function, lines", max(map(len, bodies)), "<= 60"),
         Measure(
             "lines of tests a line of source", lines_of("tests") / lines_of(*PACKAGES), ">= 0.6"

@@ -53,3 +53,26 @@ def test_what_a_test_names_is_asked() -> None:
     code = "import tamp.plan.a\nfrom tamp.plan import b\nrun('import grounding.c; print(1)')"
     named = {name for node in ast.walk(ast.parse(code)) for name in house._named(node)}
     assert named >= {"tamp.plan.a", "tamp.plan.b", "tamp.plan", "grounding.c"}
+
+
+@pytest.mark.parametrize(
+    ("code", "holds"),
+    [
+        ("def f(x):\n    return g(x)\n", False), ("def f(x):\n    return 1 if x else 2\n", True),
+        ("A = [x for x in range(3) if x]\n", False), ("def f(x):\n    return [y for y in x]\n", True),
+        ("class C:\n    def f(self, x):\n        return x < 3\n", True), ("class C:\n    x: int\n", False),
+    ],
+)  # fmt: skip
+def test_a_module_decides_by_what_its_functions_do(code: str, holds: bool, tmp_path: Path) -> None:
+    file = tmp_path / "m.py"
+    file.write_text(code)
+    assert house.decides(file) is holds
+
+
+def test_tests_mirror_the_modules(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    deciding = tmp_path / "m.py"
+    deciding.write_text("def f(x):\n    return x < 3\n")
+    names = dict.fromkeys(("tamp.planner.solve", "tamp.planner.solved", "grounding.paper.trees"), deciding)
+    monkeypatch.setattr(house, "names_of_modules", lambda: names)
+    assert house.without_test_file() == ["tamp.planner.solved"]
+    assert house.file_of_tests("grounding.paper.trees") == house.ROOT / "tests/grounding/paper/test_trees.py"
