@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from pathlib import Path
 
 import networkx as nx
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from benchmarks import house
 from benchmarks.house import Measure, measures
 
-NAMES = 10
+NAMES = 11
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +73,12 @@ def test_a_module_decides_by_what_its_functions_do(code: str, holds: bool, tmp_p
 def test_tests_mirror_the_modules(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     deciding = tmp_path / "m.py"
     deciding.write_text("def f(x):\n    return x < 3\n")
-    names = dict.fromkeys(("tamp.planner.solve", "tamp.planner.solved", "grounding.paper.trees"), deciding)
+    names = dict.fromkeys(
+        ("tamp.planner.solve", "tamp.planner.solved", "grounding.paper.trees"), deciding
+    )
     monkeypatch.setattr(house, "names_of_modules", lambda: names)
     assert house.without_test_file() == ["tamp.planner.solved"]
-    assert house.file_of_tests("grounding.paper.trees") == house.ROOT / "tests/grounding/paper/test_trees.py"
+    assert (
+        house.file_of_tests("grounding.paper.trees")
+        == house.ROOT / "tests/grounding/paper/test_trees.py"
+    )
