@@ -66,13 +66,20 @@ class Variant:
 BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
 CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
 MIDDLE = ("middle-code",)
+MEAN = ("mean-weights",)
 SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
 DEPARTED = [
     Variant("mlp-bb", "discriminator", ("residual-turn",)),
     Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
-    Variant("gnn-bb", "discriminator", ("mean-weights",)),
+    Variant("mlp-bb", "discriminator", MEAN),
+    Variant("gnn-bb", "discriminator", MEAN),
+    Variant("gnn-bb", "discriminator", (*MEAN, "own-choice")),
+    Variant("gnn-bb", "discriminator", (*MEAN, "attention")),
+    Variant("gnn-bb", "discriminator", (*MEAN, "attention", "own-choice")),
     Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
     Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights", "own-choice")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention", "own-choice")),
     Variant("gnn-bb", "both", SCALED),
     Variant("gnn-bb", "both", (*SCALED, "attention")),
     Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
