@@ -7,7 +7,8 @@ import numpy as np
 from grounding.body_geometry import BodyGeometry, geometry_of
 from grounding.relation_scene import Placed
 from tamp.geometric.scene.pose import Pose
-from tamp.geometric.scene.scene import Box, Cylinder, Part
+from tamp.geometric.scene.scene import CONTACT_GAP, Box, Cylinder, Part, Scene
+from tests.geometric.making import body, crate, scene, table
 
 
 def box(x: float, y: float, z: float) -> BodyGeometry:
@@ -26,3 +27,18 @@ def turned(
     roll: float, pitch: float, yaw: float, position: tuple[float, float, float] = (0, 0, 0)
 ) -> np.ndarray:
     return Pose.from_xyz_rpy(position, (roll, pitch, yaw)).matrix
+
+
+STANDS = 0.5 + CONTACT_GAP + 0.1
+
+
+def with_brick(
+    x: float = 0.2, y: float = 0.1, z: float = STANDS, roll: float = 0.0, *, beside: float = 0.0
+) -> Scene:
+    """A brick of 0.06 x 0.1 x 0.2 m on a table half a metre high, another one `beside` metres along x."""
+    brick = body("brick", Box((0.06, 0.1, 0.2)), (x, y, z))
+    pose = Pose.from_xyz_rpy((x, y, z), (roll, 0.0, 0.0))
+    bodies = [table(), crate(), type(brick)(**{**vars(brick), "pose": pose})]
+    return scene(
+        *bodies, *([body("other", Box((0.06, 0.1, 0.2)), (x + beside, y, z))] if beside else [])
+    )
