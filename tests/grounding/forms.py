@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from grounding.body_geometry import BodyGeometry, geometry_of
-from grounding.relation_scene import Placed
+from grounding.relation_scene import Placed, Region, RelationScene
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Box, Cylinder, Part, Scene
 from tests.geometric.making import body, crate, scene, table
@@ -27,6 +27,17 @@ def turned(
     roll: float, pitch: float, yaw: float, position: tuple[float, float, float] = (0, 0, 0)
 ) -> np.ndarray:
     return Pose.from_xyz_rpy(position, (roll, pitch, yaw)).matrix
+
+
+TOP = 0.4
+"""Metres above the ground of the table of `on_table`."""
+
+
+def on_table(body: Placed, *others: Placed, height: float = np.inf) -> RelationScene:
+    """A body on a solid table of 0.8 x 0.6 x 0.4 m about the origin, `height` metres free above it."""
+    size, corners = np.array([0.8, 0.6, height]), np.array([[-0.4, -0.3, -0.2], [0.4, 0.3, 0.2]])
+    region = Region(False, Pose((0.0, 0.0, TOP / 2)).matrix, size, corners)
+    return RelationScene(at(box(0.8, 0.6, TOP), 0.0, 0.0, TOP / 2), region, body, others)
 
 
 STANDS = 0.5 + CONTACT_GAP + 0.1

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from grounding.layers import dense, layers_of
+from grounding.layers import dense, layers_of, sigmoid
 from grounding.torch_layers import arrays_of
 
 
@@ -22,3 +22,24 @@ def test_dense_layers_are_checked() -> None:
             layers_of(arrays, "net", **wrong)
     with pytest.raises(ValueError, match=r"net\.1"):
         layers_of({**arrays, "net.1.weight": arrays["net.0.weight"]}, "net")
+
+
+def test_nothing_negative_goes_on_but_the_last_layer_may_be() -> None:
+    """2 and -2 become 2 and 0; the output is 1 - 2."""
+    layers = [
+        (np.array([[1.0, -1.0], [1.0, -1.0]]), np.zeros(2)),
+        (np.array([[-1.0], [5.0]]), np.ones(1)),
+    ]
+    assert dense(layers, np.ones((3, 2))).tolist() == [[-1.0]] * 3
+
+
+def test_a_network_that_is_missing_or_without_a_bias() -> None:
+    with pytest.raises(ValueError, match="network 'net' is missing"):
+        layers_of({"other.0.weight": np.zeros((2, 2))}, "net")
+    with pytest.raises(ValueError, match=r"layer 'net\.0' does not fit"):
+        layers_of({"net.0.weight": np.zeros((2, 2))}, "net")
+
+
+def test_the_sigmoid_is_right_where_exponentials_overflow() -> None:
+    found = sigmoid(np.array([-1e4, -np.log(3.0), 0.0, np.log(3.0), 1e4]))
+    assert found == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])

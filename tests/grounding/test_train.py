@@ -1,12 +1,15 @@
-"""Training: what cannot be trained is said before anything is read."""
+"""Training: what cannot be trained is said first; what is trained says what it is of."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from grounding.train import TrainArgs, check
+from grounding.dataset import read_dataset
+from grounding.train import TrainArgs, check, encoder_of, measure, train
+from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
 
 
@@ -25,3 +28,53 @@ from tamp.errors import InputError
 def test_what_cannot_be_trained_is_said(model: str, args: TrainArgs, message: str) -> None:
     with pytest.raises(InputError, match=message):
         check("on", model, args)
+
+
+def test_there_must_be_so_many_scenes_and_one_that_holds(stored: Path) -> None:
+    data = read_dataset(stored)
+    with pytest.raises(InputError, match="has 4 scenes, not 5"):
+        train(data, "transfer", TrainArgs(samples=5))
+    negative = data.take(np.flatnonzero(~data.holds))
+    with pytest.raises(InputError, match="none of the 2 scenes is a positive one"):
+        train(negative, "transfer")
+
+
+def test_few_labels_only_propose_and_the_card_says_of_what(stored: Path) -> None:
+    said: list[str] = []
+    weights = train(read_dataset(stored), "transfer", TrainArgs(seed=3, commit="abc"), said.append)
+    assert said == ["measuring 4 scenes"]
+    card = weights.card
+    assert (card["relation"], card["model"], card["samples"]) == ("upright", "transfer", 4)
+    assert (card["seed"], card["commit"]) == (3, "abc")
+    assert card["ranks"] is False and card["classifies"] is False
+    assert not any(name.startswith("rank.") for name in weights.arrays)
+    assert len(weights.arrays["coordinates"]) == 2  # the two that hold
+
+
+def test_only_the_first_demonstrations_are_transferred(stored: Path) -> None:
+    weights = train(read_dataset(stored), "transfer", TrainArgs(demonstrations=1))
+    assert len(weights.arrays["coordinates"]) == 1
+
+
+def test_an_example_is_measured_where_its_body_is(stored: Path) -> None:
+    example = read_dataset(stored)[0]
+    measured = measure(example)
+    region = example.situation.T_world_region
+    assert region @ measured.poses[0] == pytest.approx(example.situation.body.matrix)
+
+
+def test_an_encoder_is_a_file_of_its_own_or_in_a_model(tmp_path: Path) -> None:
+    arrays = {"0.weight": np.ones((3, 128), np.float32)}
+    files = {
+        "own": Weights(arrays, {"model": "encoder", "kind": "conv"}),
+        "model": Weights(
+            {f"encoder.{name}": one for name, one in arrays.items()}, {"model": "mlp-pc"}
+        ),
+    }
+    for name, weights in files.items():
+        write_weights(tmp_path / name, weights)
+        assert {*encoder_of(tmp_path / name).arrays} == {"0.weight"}
+    for card in ({"model": "encoder", "kind": "graph"}, {"model": "mlp-bb"}):
+        write_weights(tmp_path / "other", Weights(arrays, card))
+        with pytest.raises(InputError, match="no encoder of kind 'conv'"):
+            encoder_of(tmp_path / "other")

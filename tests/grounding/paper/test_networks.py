@@ -5,7 +5,16 @@ import pytest
 import torch
 
 from grounding.paper.features import BB, PC, completed
-from grounding.paper.networks import Batch, Ensemble, critic_shapes, generate, score
+from grounding.paper.networks import (
+    Batch,
+    Ensemble,
+    classifier_shapes,
+    critic_shapes,
+    embedding,
+    generate,
+    generator_shapes,
+    score,
+)
 from grounding.paper.numpy_networks import NOISE, Network
 from grounding.paper.runtime import generated, judged, unit
 from tests.grounding.paper.untrained import untrained
@@ -78,3 +87,47 @@ def test_a_step_of_the_optimiser_is_torchs_rmsprop():
     assert ensemble.gradient.abs().max() == 0
     for mine, other in zip(ensemble.weights.values(), weights, strict=True):
         torch.testing.assert_close(mine, other)
+
+
+def test_layers_are_the_papers():
+    assert classifier_shapes(BB, False) == {
+        "main.0": (38, 64), "main.1": (64, 32), "main.2": (32, 1)
+    }  # fmt: skip
+    assert generator_shapes(BB, False)["main.0"] == (38 + NOISE, 12)
+    assert generator_shapes(BB, True) == {
+        "scene.0": (57, 64), "scene.1": (64, 32), "scene.2": (32, 16),
+        "main.0": (38 + 16 + NOISE, 12), "main.1": (12, 12), "main.2": (12, 7),
+    }  # fmt: skip
+    assert classifier_shapes(BB, True, attention=True)["attend.0"] == (32, 1)
+    assert critic_shapes(PC)["main.0"] == (270, 64) and critic_shapes(PC)["main.3"] == (12, 1)
+
+
+@pytest.mark.parametrize("attention", [False, True])
+def test_a_scene_without_others_has_the_last_layers_bias(attention):
+    parts, _ = untrained(BB, True, attention)
+    weights = parts["classifier"].weights
+    random = torch.Generator().manual_seed(5)
+    others, arguments = (
+        torch.randn(shape, generator=random) for shape in ((2, 3, 4, BB), (2, 3, 2 * BB))
+    )
+    share = torch.zeros(2, 3, 4)
+    share[:, 1, 0] = 1.0
+    found = embedding(weights, Batch(arguments, others, share))
+    bias = weights["scene.2.bias"].expand(2, 3, -1)
+    torch.testing.assert_close(found[:, [0, 2]], bias[:, [0, 2]])
+    assert (found[:, 1] - bias[:, 1]).abs().max() > 1e-3
+    padded = others.clone()
+    padded[:, 1, 1:] = 9.0  # what has no share does not count
+    torch.testing.assert_close(embedding(weights, Batch(arguments, padded, share)), found)
+
+
+def test_a_model_of_an_ensemble_starts_as_it_would_alone():
+    """Bounds are Xavier's with the gain of a ReLU; biases are zero."""
+    shapes = classifier_shapes(BB, False)
+    together = Ensemble(shapes, [torch.Generator().manual_seed(seed) for seed in (3, 4)])
+    alone = Ensemble(shapes, [torch.Generator().manual_seed(4)]).model(0)
+    assert all((array == alone[name]).all() for name, array in together.model(1).items())
+    bound = (12 / (38 + 64)) ** 0.5
+    weight = alone["main.0.weight"]
+    assert weight.shape == (38, 64) and 0.95 * bound < np.abs(weight).max() <= bound
+    assert not alone["main.0.bias"].any()

@@ -1,10 +1,12 @@
 """Decision trees at work: what their leaves contain, what they propose, arrays that are no tree."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from grounding.paper.features import BoxFeatures
-from grounding.paper.trees import TreeModel, position_limits
+from grounding.paper.trees import Tree, TreeModel, position_limits
 from grounding.weights import Weights
 from tamp.errors import InputError
 
@@ -67,3 +69,40 @@ def test_arrays_of_no_tree_are_refused(tree, change, message):
         arrays[name] = array
     with pytest.raises(InputError, match=message):
         TreeModel(Weights(arrays, {}))
+
+
+def test_a_tree_without_a_positive_leaf_proposes_nothing(data, tree):
+    none = {**tree.arrays, "tree.positive": np.zeros_like(tree.arrays["tree.positive"])}
+    model = TreeModel(Weights(none, {}))
+    assert model.propose(data[0].situation, 5, np.random.default_rng(0)).shape == (0, 4, 4)
+
+
+def test_limits_of_a_box_are_limits_of_its_position(data):
+    """A body of 0.2 x 0.1 x 0.1 m that is not turned: its box's low side from 0.1 m on, its high side to 0.5 m."""
+    seen = replace(BoxFeatures().observe(data[0].situation), extents=np.array([0.1, 0.05, 0.05]))
+    low, high = np.full((1, 19), -np.inf), np.full((1, 19), np.inf)
+    low[0, :3], high[0, :3] = -1.0, 1.0
+    low[0, 3], high[0, 6] = 0.1, 0.5
+    least, most = position_limits(low, high, np.array([[0.0, 0.0, 0.0, 1.0]]), seen)
+    assert least[0].tolist() == pytest.approx([0.2, -1.0, -1.0])
+    assert most[0].tolist() == pytest.approx([0.4, 1.0, 1.0])
+    high[0, 6] = 0.2  # it does not fit: the middle of 0.2 and 0.1
+    least, most = position_limits(low, high, np.array([[0.0, 0.0, 0.0, 1.0]]), seen)
+    assert least[0, 0] == most[0, 0] == pytest.approx(0.15)
+
+
+def test_at_a_threshold_one_goes_left():
+    """One node that looks at argument 1's first number: up to 0.5 it goes left."""
+    nodes = {
+        "feature": [19, -1, -1], "threshold": [0.5, 0.0, 0.0], "left": [1, -1, -1],
+        "right": [2, -1, -1], "positive": [0.5, 1.0, 0.0],
+    }  # fmt: skip
+    arrays = {f"tree.{name}": np.array(column) for name, column in nodes.items()}
+    bounds = {"tree.low": np.full(19, -1.0), "tree.high": np.full(19, 1.0)}
+    tree = Tree({**arrays, **bounds}, 19)
+    features = np.zeros((3, 38))
+    features[:, 19] = [0.4, 0.5, 0.6]
+    assert tree.leaf(features).tolist() == [1, 1, 2]
+    assert tree.leaves.tolist() == [1]
+    assert (tree.low[0, 0], tree.high[0, 0]) == (-1.0, 0.5)
+    assert tree.high[0, 3] == np.inf  # edges along the world's axes follow from the rest
