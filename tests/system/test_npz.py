@@ -1,4 +1,4 @@
-"""Arrays of a .npz file that claims what is not there cost nothing, and are one error."""
+"""Arrays of a .npz file come back as they were written; one that claims what is not there costs nothing."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import resource
 import struct
 import time
 import zipfile
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
-from grounding.npz import read_npz
 from tamp.errors import InputError
+from tamp.system.npz import read_npz
+
+MOST_BYTES = 400_000_000
 
 
 def npz(*members: tuple[str, bytes], method: int = zipfile.ZIP_DEFLATED) -> bytes:
@@ -73,7 +76,41 @@ def test_an_archive_that_is_none_costs_nothing(case: str) -> None:
     content, message = archives()[case]
     before, began = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, time.process_time()
     with pytest.raises(InputError) as caught:
-        read_npz(content)
+        read_npz(content, most_bytes=MOST_BYTES, most_members=100)
     assert message in str(caught.value)
     assert time.process_time() - began < 10.0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 500_000
+
+
+ARRAYS = {
+    "numbers": np.arange(6.0).reshape(2, 3),
+    "columns": np.asfortranarray(np.arange(6).reshape(2, 3)),
+    "big_endian": np.arange(3, dtype=">i4"),
+    "half": np.array([0.5, 1.5], np.float16),
+    "one": np.array(0.25),
+    "none": np.zeros((0, 3)),
+    "truth": np.array([[True], [False]]),
+    "link/0/vertices": np.array([7], np.uint8),
+}
+
+
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_arrays_come_back_as_they_were_written(save: Callable[..., None]) -> None:
+    buffer = io.BytesIO()
+    save(buffer, **ARRAYS)
+    found = read_npz(buffer.getvalue(), most_bytes=MOST_BYTES, most_members=100)
+    assert {*found} == {*ARRAYS}
+    for name, array in ARRAYS.items():
+        assert (found[name].dtype, found[name].shape) == (array.dtype, array.shape), name
+        assert (found[name] == array).all()
+        assert found[name].flags.writeable
+
+
+@pytest.mark.parametrize(("most_bytes", "most_members"), [(16 + 2 * 128, 2), (10_000, 2)])
+def test_as_much_as_is_allowed_is_read(most_bytes: int, most_members: int) -> None:
+    content = npz(*((f"{name}.npy", header((1,)) + b"\0" * 8) for name in "ab"))
+    assert len(read_npz(content, most_bytes=most_bytes, most_members=most_members)) == 2
+    with pytest.raises(InputError, match="more than 1 members"):
+        read_npz(content, most_bytes=most_bytes, most_members=1)
+    with pytest.raises(InputError, match="its arrays take"):
+        read_npz(content, most_bytes=15 + 2 * 128, most_members=most_members)
