@@ -9,7 +9,7 @@ import pytest
 
 import tamp
 from grounding.cli import BAD_INPUT, DONE, run
-from grounding.collect import Demonstration, collect, read_demonstrations
+from grounding.collect import Demonstration, collect, read_demonstrations, unstable
 from grounding.dataset import read_dataset, write_dataset
 from tests.grounding.shown import scene
 
@@ -148,3 +148,23 @@ def test_there_must_be_demonstrations(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "no .yaml files in this folder" in capsys.readouterr().err
     assert run(["train", "stacked"]) == BAD_INPUT
     assert "tamp-learn collect stacked FILES makes its data" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("height", "words"),
+    [("0.72", None), ("0.60", "is sunk 120 mm into the place"), ("0.724", None)],
+)
+def test_what_is_sunk_is_warned_of_and_a_few_millimetres_are_not(
+    height: str, words: str | None, tmp_path: Path
+) -> None:
+    """The jar is 0.15 m tall, so its middle is 0.075 m above its foot; the table is 0.72 m high."""
+    path = tray_scene(tmp_path, "(stacked jar table)")
+    at = f"at: [1.3, 0.1, {float(height) + 0.075}]"
+    path.write_text(path.read_text().replace("on: table, at: [-0.3, 0.1]", at))
+    said = unstable(collect("stacked", read_demonstrations("stacked", [path])))
+    assert (
+        said == []
+        if words is None
+        else [one.partition("jar ")[2] for one in said]
+        == [f"{words} (1 scene): no plan will put it down so"]
+    )

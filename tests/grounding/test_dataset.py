@@ -1,4 +1,4 @@
-"""Data sets and their cards: read whole and sound, or refused with the file, the array and the row."""
+"""Data sets and their cards: scenes there and back; or refused with the file, the array and the row."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ import numpy as np
 import pytest
 
 from grounding.cli import BAD_INPUT, run
-from grounding.dataset import read_dataset
+from grounding.dataset import Dataset, read_dataset, write_dataset
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
+from tests.geometric.making import cuboid, hull
 from tests.grounding.shown import Arrays, changed
 
 
@@ -137,3 +140,72 @@ def test_a_card_that_is_wrong(entry: str, value: Any, message: str, stored: Path
         read_dataset(stored)
     assert message in str(caught.value)
     assert "\x1b" not in str(caught.value)
+
+
+LIFTED = Pose((0.0, 0.1, 0.2), (0.0, 0.0, 0.6, 0.8))
+
+TEMPLATES = {
+    "table": (Part(Box((1.0, 0.6, 0.4))),),
+    "lamp": (Part(Cylinder(0.02, 0.3)), Part(Sphere(0.05), LIFTED)),
+    "stone": (Part(hull(cuboid((0.1, 0.2, 0.3)))), Part(hull(cuboid((0.3, 0.1, 0.1))), LIFTED)),
+}
+
+
+def by_hand() -> Dataset:
+    """Three scenes on a table: a lamp, a stone beside a lamp of twice the size, a stone far from a lamp."""
+    pose = np.tile(np.eye(4), (3, 3, 1, 1))
+    pose[:, 1, 2, 3] = 0.5
+    pose[1, 2, 0, 3], pose[2, 2, 0, 3] = 0.4, 5.0
+    scale = np.ones((3, 3))
+    scale[1, 2] = 2.0
+    arrays = {
+        "holds": np.array([True, False, True]),
+        "kind": np.array([0, 1, 0], np.int8),
+        "body": np.array([[0, 1, -1], [0, 2, 1], [0, 2, 1]], np.int16),
+        "scale": scale,
+        "pose": pose,
+        "hollow": np.zeros(3, bool),
+        "region": np.tile(Pose((0.0, 0.0, 0.2)).matrix, (3, 1, 1)),
+        "size": np.tile([1.0, 0.6, np.inf], (3, 1)),
+        "box": np.tile([[-0.5, -0.3, -0.2], [0.5, 0.3, 0.2]], (3, 1, 1)),
+        "feasible": np.ones(3, bool),
+    }
+    card = {"relation": "on", "count": 3, "by type": {"yes": 2, "no": 1}}
+    return Dataset(arrays, TEMPLATES, ["yes", "no"], card)
+
+
+def test_an_example_is_a_row_with_what_is_near() -> None:
+    data = by_hand()
+    alone, beside, far = data
+    assert (alone.holds, alone.kind, alone.names, alone.scales) == (
+        True, "yes", ("table", "lamp"), (1.0, 1.0)
+    )  # fmt: skip
+    assert (beside.holds, beside.kind, beside.names) == (False, "no", ("table", "stone", "lamp"))
+    (lamp,) = beside.situation.others
+    assert lamp.form.scale == 2.0 and lamp.matrix[0, 3] == 0.4
+    assert lamp.form.unit is alone.situation.body.form  # made once
+    assert far.situation.others == () and len(far.names) == 3  # it is farther than a metre
+    assert alone.situation.T_world_region[2, 3] == pytest.approx(0.2)
+    assert data.form(1, 2) is not lamp.form and data.form(1, 2).scale == 2.0
+
+
+def test_some_of_the_rows() -> None:
+    some = by_hand().take([2, 0])
+    assert len(some) == 2 and some.holds.tolist() == [True, True]
+    assert [example.names[1] for example in some] == ["stone", "lamp"]
+
+
+def test_all_shapes_come_back_as_they_were_written(tmp_path: Path) -> None:
+    write_dataset(tmp_path / "d.npz", by_hand())
+    again = read_dataset(tmp_path / "d.npz")
+    assert [*again.templates] == [*TEMPLATES] and again.kinds == ("yes", "no")
+    for name, parts in TEMPLATES.items():
+        for part, found in zip(parts, again.templates[name], strict=True):
+            assert found.pose == part.pose and type(found.shape) is type(part.shape)
+            if isinstance(part.shape, Hull) and isinstance(found.shape, Hull):
+                assert np.array_equal(found.shape.vertices, part.shape.vertices)
+                assert np.array_equal(found.shape.faces, part.shape.faces)
+            else:
+                assert found.shape == part.shape
+    write_dataset(tmp_path / "again.npz", again)
+    assert (tmp_path / "again.npz").read_bytes() == (tmp_path / "d.npz").read_bytes()

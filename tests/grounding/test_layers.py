@@ -41,5 +41,5 @@ def test_a_network_that_is_missing_or_without_a_bias() -> None:
 
 
 def test_the_sigmoid_is_right_where_exponentials_overflow() -> None:
-    found = sigmoid(np.array([-1e4, -np.log(3.0), 0.0, np.log(3.0), 1e4]))
-    assert found == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    found = sigmoid(np.array([-1e4, -np.log(3.0), 0.0, np.log(1.5), np.log(3.0), 1e4]))
+    assert found == pytest.approx([0.0, 0.25, 0.5, 0.6, 0.75, 1.0])

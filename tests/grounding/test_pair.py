@@ -146,3 +146,39 @@ def test_a_writer_that_is_killed_at_any_time(tmp_path: Path) -> None:
         assert found.card["number"] == found.arrays["x"][0]
         seen.add(found.card["number"])
     assert seen != {0}
+
+
+def test_the_error_names_what_the_caller_asked_for_and_nothing_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "w.safetensors"
+    write = pair.write_whole
+
+    def full(file: Path, content: bytes) -> None:
+        if file == path:
+            raise OSError(28, "No space left on device", "/tmp/.w.safetensors.moment")
+        write(file, content)
+
+    monkeypatch.setattr(pair, "write_whole", full)
+    with pytest.raises(OSError, match="No space left") as caught:
+        pair.write_pair(path, b"numbers", {"format": "x"})
+    assert caught.value.filename == str(path)
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_cards_that_wait_for_nobody_are_taken_away(tmp_path: Path) -> None:
+    """Those of this file alone, and nothing that only looks like one."""
+    left, others = f".w.json.{'0a' * 8}", [f".v.json.{'0a' * 8}", ".w.json.notes"]
+    for name in (left, *others):
+        (tmp_path / name).write_text("{}")
+    pair.write_pair(tmp_path / "w.npz", b"numbers", {"format": "x"})
+    assert sorted(file.name for file in tmp_path.iterdir()) == sorted([*others, "w.json", "w.npz"])
+
+
+@pytest.mark.parametrize("missing", ["w.npz", "w.json"])
+def test_one_of_the_two_that_is_missing_is_named(missing: str, tmp_path: Path) -> None:
+    pair.write_pair(tmp_path / "w.npz", b"numbers", {"format": "x"})
+    (tmp_path / missing).unlink()
+    with pytest.raises(InputError, match="no such thing") as caught:
+        pair.read_pair(tmp_path / "w.npz", "x", what="thing", most=100, remedy="Make it")
+    assert caught.value.file == str(tmp_path / missing)

@@ -20,11 +20,13 @@ from grounding.scenes import (
     SceneSampler,
     free,
     resting,
+    some_hold_in_physics,
     touchable,
 )
 from grounding.separation import Obstacles, separations
 from grounding.supports import FurnitureSupport
 from tamp.geometric.scene.pose import Array, Pose
+from tamp.simulation.engines import open_drops
 from tests.grounding.forms import TOP, at, box, on_table
 
 SCENES = 6
@@ -141,3 +143,23 @@ def test_poses_at_rest_are_on_the_table_and_in_a_container_wholly() -> None:
 
 def test_under_too_low_a_ceiling_nothing_rests() -> None:
     assert resting(hand_made(height=0.03), np.random.default_rng(0)).shape == (0, 4, 4)
+
+
+def test_the_situation_of_a_pose_has_what_is_near_it() -> None:
+    """The support's box ends at 0.4 m; surroundings are within a metre of it or of the body."""
+    cubes = [at(box(0.1, 0.1, 0.1), x, 0.0, TOP + 0.05) for x in (0.3, 1.6)]
+    scene = hand_made(*cubes)
+    assert scene.placed == cubes
+    assert scene.situation(placed(0.0)).others == (cubes[0],)
+    assert scene.situation(placed(0.8)).others == tuple(cubes)
+    assert (scene.situation(placed(0.1)).body.matrix == placed(0.1)).all()
+
+
+def test_whether_something_holds_is_asked_of_physics_where_it_is_free() -> None:
+    scene = hand_made(at(box(0.1, 0.1, 0.1), 0.3, 0.0, TOP + 0.05))
+    rests, hangs, collides = placed(0.0), placed(0.0, z=TOP + 0.3), placed(0.3)
+    rests[2, 3] += 0.001
+    with open_drops() as drops:
+        items = ItemOf()
+        assert some_hold_in_physics(scene, np.stack([hangs, rests]), drops, items)
+        assert not some_hold_in_physics(scene, np.stack([hangs, collides]), drops, items)

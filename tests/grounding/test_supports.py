@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from grounding.supports import PIECES, scaled_region, support_templates
+from grounding.supports import PIECES, household_supports, scaled_region, support_templates
 from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Pose
 
@@ -36,3 +36,12 @@ def test_a_scaled_region_is_larger_about_its_supports_origin() -> None:
         2.0 * region.box
     )
     assert scaled.hollow
+
+
+def test_a_household_scene_has_the_relations_pieces_first_and_tables_too() -> None:
+    inside, tables = support_templates("inside", "test"), support_templates("on", "test")
+    found = household_supports("inside", "test")
+    assert [*found] == [*inside, *tables] and found[next(iter(inside))] is inside[
+        next(iter(inside))
+    ]
+    assert [*household_supports("on", "test")] == [*tables]

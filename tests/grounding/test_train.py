@@ -7,7 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from grounding import train as module
+from grounding.certainty import ENOUGH, REASON
 from grounding.dataset import read_dataset
+from grounding.relational import training
 from grounding.train import TrainArgs, check, encoder_of, measure, train
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
@@ -78,3 +81,26 @@ def test_an_encoder_is_a_file_of_its_own_or_in_a_model(tmp_path: Path) -> None:
         write_weights(tmp_path / "other", Weights(arrays, card))
         with pytest.raises(InputError, match="no encoder of kind 'conv'"):
             encoder_of(tmp_path / "other")
+
+
+@pytest.mark.parametrize(
+    ("score", "why"),
+    [
+        (0.9, None),
+        (0.5, "it is right about 50 %, as saying the same always is"),
+        (0.4, "about 40 %"),
+    ],
+)
+def test_a_ranker_that_is_right_as_often_as_chance_does_not_judge(
+    score: float, why: str | None, stored: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of many labels the validation split tells it; half of these hold."""
+
+    many = read_dataset(stored).take(np.resize(np.arange(4), ENOUGH))
+    net = training.RankerNet(8, 4).arrays()
+    monkeypatch.setattr(module, "MANY", ENOUGH)
+    monkeypatch.setattr(training, "train_ranker", lambda *_: (net, score))
+    card = train(many, "transfer").card
+    assert card["ranks"] is True and card["validation accuracy"] == score
+    assert card["classifies"] is (why is None)
+    assert (why or "") in card.get(REASON, "")

@@ -57,3 +57,14 @@ def test_what_is_the_same_in_all_is_warned_of(
 )
 def test_one_label_alone_is_warned_of(goal: str, words: str, tmp_path: Path) -> None:
     assert words in monotony(demonstrations(tmp_path, goal=goal))[0]
+
+
+def test_in_one_scene_nothing_varies(tmp_path: Path) -> None:
+    one = demonstrations(tmp_path, count=1)
+    (said,) = monotony(one)
+    assert said == "'upright' holds in one scene only (row 0): nothing varies in it"
+
+
+def test_only_what_is_trained_on_is_looked_at(tmp_path: Path) -> None:
+    """Of the first two rows one holds."""
+    assert "in one scene only (row 0)" in monotony(demonstrations(tmp_path), count=2)[0]

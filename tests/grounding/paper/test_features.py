@@ -69,3 +69,29 @@ def test_poses_there_and_back(data):
     pose = data[1].situation.body.matrix[None]
     again = poses_of(seen, seen.arguments[1:, :3], quaternions(pose[:, :3, :3]))
     np.testing.assert_allclose(again, pose, atol=1e-12)
+
+
+def test_clouds_that_are_turned_absolutely_have_their_centroid_and_their_turn(
+    laid_out: Dataset,
+) -> None:
+    features = CloudFeatures(lambda points: np.resize(points.std(axis=0), 128), residual=False)
+    situation: RelationScene = laid_out[0].situation
+    seen = features.observe(situation)
+    body = situation.body
+    points = cloud(body.form) @ body.matrix[:3, :3].T + body.matrix[:3, 3]
+    assert seen.arguments[1, :3] + seen.origin == pytest.approx(points.mean(axis=0))
+    assert rotations(seen.arguments[1:, 3:7])[0] == pytest.approx(body.matrix[:3, :3])
+    assert seen.arguments[1, 7:10] == pytest.approx(points.std(axis=0))
+    again = poses_of(seen, seen.arguments[1:, :3], seen.arguments[1:, 3:7])
+    assert again[0] == pytest.approx(body.matrix)
+    # completed: another place and turn, the code stays
+    turn = np.array([[0.0, 0.0, 0.6, 0.8]])
+    found = completed(seen, np.ones((1, 3)), turn)
+    assert found[0, :7].tolist() == [1.0, 1.0, 1.0, 0.0, 0.0, 0.6, 0.8]
+    assert (found[0, 7:] == seen.arguments[1, 7:]).all()
+
+
+def test_who_sees_no_surroundings_is_shown_none(data: Dataset) -> None:
+    situation = next(one.situation for one in data if len(one.situation.others) == 3)
+    assert BoxFeatures().observe(situation).others.shape == (3, 19)
+    assert BoxFeatures().observe(situation, surroundings=False).others.shape == (0, 19)

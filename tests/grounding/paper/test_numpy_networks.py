@@ -67,3 +67,32 @@ def test_a_missing_network_is_said():
     _, arrays = untrained(BB, False)
     with pytest.raises(InputError, match="the weights have no generator"):
         PaperModel(Weights({k: v for k, v in arrays.items() if "generator" not in k}, {}))
+
+
+def test_layers_are_applied_with_nothing_negative_between_them():
+    """2 and -2 become 2 and 0; the output is 1 - 2."""
+    arrays = {
+        "net.main.0.weight": np.array([[1.0, -1.0], [1.0, -1.0]]), "net.main.0.bias": np.zeros(2),
+        "net.main.1.weight": np.array([[-1.0], [5.0]]), "net.main.1.bias": np.ones(1),
+    }  # fmt: skip
+    network = Network(arrays, "net")
+    assert network(np.ones((3, 2), np.float32)).tolist() == [[-1.0]] * 3
+    assert network.context(np.ones((3, 2), np.float32), np.ones((4, 1), np.float32)).shape == (3, 0)
+
+
+def test_where_nothing_is_around_the_embedding_is_the_last_layers_bias():
+    _, arrays = untrained(BB, True)
+    network = Network(arrays, "classifier")
+    found = network.context(np.ones((3, 2 * BB), np.float32), np.zeros((0, BB), np.float32))
+    assert np.array_equal(found, np.tile(arrays["classifier.scene.2.bias"], (3, 1)))
+
+
+def test_surroundings_of_other_bodies_are_refused():
+    _, arrays = untrained(BB, True)
+    with pytest.raises(
+        InputError, match="go through 3 layers, 60 numbers a body; it should be 3 and 57"
+    ):
+        PaperModel(Weights({**arrays, "classifier.scene.0.weight": np.zeros((60, 64))}, {}))
+    del arrays["classifier.scene.2.weight"]
+    with pytest.raises(InputError):
+        PaperModel(Weights(arrays, {}))

@@ -1,12 +1,23 @@
-"""What is trained in torch is the same in numpy."""
+"""The paper's models at work: what they propose, how likely they take it to be, and codes of clouds."""
 
 import numpy as np
+import pytest
 
-from grounding.paper.features import BB, BoxFeatures, completed
+from grounding.paper.features import BB, CODE, BoxFeatures, completed
 from grounding.paper.numpy_networks import NOISE
 from grounding.paper.rotations import rotations
-from grounding.paper.runtime import TRIES, PaperModel, generated, unit
+from grounding.paper.runtime import (
+    CHOICE,
+    TRIES,
+    NumpyEncoder,
+    PaperModel,
+    choosing,
+    generated,
+    scaled,
+    unit,
+)
 from grounding.weights import Weights
+from tamp.errors import InputError
 from tests.grounding.paper.untrained import untrained
 
 
@@ -51,3 +62,45 @@ def test_the_own_classifier_chooses(data):
     expected = all_of_them.reshape(3, 8, 4, 4)[range(3), likely.argmax(axis=1)]
     np.testing.assert_allclose(found, expected, atol=1e-6)
     assert chosen.propose(situation, 0, np.random.default_rng(3)).shape == (0, 4, 4)
+
+
+def encoder_arrays(scale=2.0, points=3):
+    """One layer that gives the first three numbers as they are."""
+    return {
+        "0.weight": np.eye(3, CODE), "0.bias": np.full(CODE, 0.5),
+        "scale": np.array(scale), "points": np.array(points),
+    }  # fmt: skip
+
+
+def test_a_code_is_the_largest_of_each_number_over_the_points():
+    """Metres are multiplied by two, of the four points three are looked at, and the bias is added at the end."""
+    cloud = np.array([[0.1, -0.2, 0.0], [0.3, -0.4, 0.0], [-0.5, -0.6, 0.0], [9.0, 9.0, 9.0]])
+    code = NumpyEncoder(encoder_arrays())(cloud)
+    assert code[:4] == pytest.approx([1.1, 0.1, 0.5, 0.5]) and code.shape == (CODE,)
+
+
+def test_a_cloud_is_scaled_by_one_factor_or_to_the_cube():
+    cloud = np.array([[0.0, 0.0, 0.0], [0.5, 0.2, -0.1]])
+    assert scaled(cloud, 3.0) == pytest.approx(3.0 * cloud)
+    assert scaled(cloud, 0.0) == pytest.approx(2.0 * cloud)
+    assert np.isfinite(scaled(np.zeros((2, 3)), 0.0)).all()
+
+
+@pytest.mark.parametrize("name", ["0.weight", "scale", "points"])
+def test_an_encoder_is_whole_or_none(name):
+    arrays = encoder_arrays()
+    del arrays[name]
+    with pytest.raises(InputError, match="have no encoder of clouds"):
+        NumpyEncoder(arrays)
+
+
+def test_an_encoder_of_other_codes_is_none():
+    arrays = {**encoder_arrays(), "0.weight": np.eye(3), "0.bias": np.zeros(3)}
+    with pytest.raises(InputError, match="have no encoder of clouds"):
+        NumpyEncoder(arrays)
+
+
+def test_who_chooses_says_among_how_many():
+    weights = Weights({"x": np.zeros(1)}, {"model": "mlp-bb"})
+    assert choosing(weights).arrays[TRIES].tolist() == [CHOICE] and TRIES not in weights.arrays
+    assert choosing(weights, 3).arrays[TRIES].tolist() == [3.0]

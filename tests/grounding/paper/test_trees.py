@@ -54,6 +54,7 @@ def test_a_trees_proposals_are_in_its_positive_leaves(data, tree):
         ({"tree.left": np.zeros(1, int)}, "nodes that do not fit"),
         ({"tree.left": "zero"}, "children"),
         ({"tree.feature": "far"}, "a feature that there is not"),
+        ({"tree.low": np.full(19, 9.0)}, "a range that ends before it begins"),
     ],
 )
 def test_arrays_of_no_tree_are_refused(tree, change, message):
@@ -106,3 +107,15 @@ def test_at_a_threshold_one_goes_left():
     assert tree.leaves.tolist() == [1]
     assert (tree.low[0, 0], tree.high[0, 0]) == (-1.0, 0.5)
     assert tree.high[0, 3] == np.inf  # edges along the world's axes follow from the rest
+
+
+def test_a_leaf_that_no_example_can_reach_is_refused():
+    """Argument 1's first number is at most 0.2; a positive leaf wants it beyond 0.5."""
+    nodes = {
+        "feature": [19, -1, -1], "threshold": [0.5, 0.0, 0.0], "left": [1, -1, -1],
+        "right": [2, -1, -1], "positive": [0.5, 0.0, 1.0],
+    }  # fmt: skip
+    arrays = {f"tree.{name}": np.array(column) for name, column in nodes.items()}
+    bounds = {"tree.low": np.full(19, -1.0), "tree.high": np.full(19, 0.2)}
+    with pytest.raises(InputError, match="a leaf that no example can reach"):
+        Tree({**arrays, **bounds}, 19)

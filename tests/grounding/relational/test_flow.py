@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import torch
@@ -99,3 +101,20 @@ def test_a_scale_that_is_none_is_refused(scale: np.ndarray) -> None:
     chart = RelationalCoordinates.fit(bricks(1)[0])
     with pytest.raises(ValueError, match="not one of 7 coordinates"):
         Flow(chart, {**FlowNet(8).arrays(), "scale": scale.astype(np.float32)})
+
+
+def test_only_steady_faces_are_drawn_and_the_steadiest_where_none_is() -> None:
+    """A plate stands on its rim less steadily than it lies."""
+    view = RegionFrame(on_table(at(box(0.2, 0.2, 0.04), 0.0, 0.0, 1.0)))
+    flat = view.steadiness.max()
+    lying = {*np.flatnonzero(view.steadiness == flat).tolist()}
+    assert 0 < len(lying) < len(view.faces)
+    chart = RelationalCoordinates.fit(bricks(1)[0])
+    arrays = {**FlowNet(8).arrays(), "scale": np.ones(COORDINATES, np.float32)}
+    for steadiness, faces in ((0.5 * flat, lying), (2.0 * flat, lying), (0.0, {*range(6)})):
+        flow = Flow(replace(chart, steadiness=float(steadiness)), arrays)
+        drawn = flow.draw(view, 300, np.random.default_rng(0))
+        assert drawn.poses.shape == (300, 4, 4)
+        assert {*drawn.face.tolist()} == faces
+        again = flow.draw(view, 300, np.random.default_rng(0))
+        assert np.array_equal(drawn.poses, again.poses)

@@ -9,15 +9,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from grounding.body_geometry import geometry_of
 from grounding.dataset import Dataset
 from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
+from grounding.relational.coordinates import RelationalCoordinates
 from grounding.relational.measures import RegionFrame
-from grounding.relational.model import RelationalModel
+from grounding.relational.model import HOPELESS, RelationalModel, relational_weights
+from grounding.relational.proposals import Transfer
 from grounding.train import TRAINERS, TrainArgs
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Part, Sphere
 from tamp.simulation.engines import open_drops
+from tests.grounding.forms import TOP, at, box, on_table
+from tests.grounding.relational.situations import bricks
 
 Trained = dict[tuple[str, str], Weights]
 
@@ -109,3 +116,45 @@ def test_the_runtime_needs_no_torch(tmp_path: Path, trained: Trained) -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "False"
+
+
+@pytest.fixture(scope="module")
+def standing() -> RelationalModel:
+    """What 20 standing bricks say, without a ranker."""
+    measured, holds = bricks(40)
+    shown = [one for one, stands in zip(measured, holds, strict=True) if stands]
+    chart = RelationalCoordinates.fit(shown)
+    proposals = Transfer.of(chart, [chart.encode(one) for one in shown])
+    card = {"model": "transfer", "ranks": False, "classifies": False}
+    return RelationalModel(relational_weights(chart, proposals, {}, card))
+
+
+def test_without_a_ranker_it_holds_where_all_is_kept(standing: RelationalModel) -> None:
+    """The brick stands with its middle 0.02 m above the table; off by more than 0.03 m it does not hold."""
+    situation = on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0))
+    heights, places = [0.02, 0.045, 0.055, -0.015], [0.0, 0.0, 0.0, 0.0]
+    poses = np.stack([Pose((x, 0.0, TOP + z)).matrix for x, z in zip(places, heights, strict=True)])
+    assert standing.classify(situation, poses) == pytest.approx([1.0, 1.0, 0.0, 0.0])
+    over = standing.classify(situation, Pose((0.45, 0.0, TOP + 0.02)).matrix[None])
+    assert over[0] < 1e-3
+    assert standing.classify(situation, poses[:0]).shape == (0,)
+
+
+def test_what_keeps_what_all_have_kept_is_proposed_first(standing: RelationalModel) -> None:
+    cube = at(box(0.2, 0.2, 0.2), 0.0, 0.0, TOP + 0.1)
+    situation = on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0), cube)
+    poses = standing.propose(situation, 10, np.random.default_rng(0))
+    view = RegionFrame(situation)
+    measured = view.measure(view.T_region_world @ poses)
+    assert len(poses) == 10 and (measured.nearest >= -0.001).all()
+    assert (standing._scores(measured) > HOPELESS).all()
+    _, downs = standing.propose_on_faces(situation, 3, np.random.default_rng(0))
+    assert downs.shape == (3, 3, 3)
+
+
+def test_what_rests_on_no_face_is_not_proposed_and_does_not_hold(standing: RelationalModel) -> None:
+    ball = geometry_of((Part(Sphere(0.05)),))
+    assert ball.faces == ()
+    situation = on_table(at(ball, 0.0, 0.0, TOP + 0.05))
+    assert standing.propose(situation, 5, np.random.default_rng(0)).shape == (0, 4, 4)
+    assert standing.classify(situation, situation.body.matrix[None]).tolist() == [0.0]
