@@ -8,6 +8,7 @@ import struct
 import time
 import zipfile
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 import pytest
@@ -34,6 +35,7 @@ def header(shape: tuple[int, ...], kind: str = "<f8") -> bytes:
     return buffer.getvalue()
 
 
+@cache
 def archives() -> dict[str, tuple[bytes, str]]:
     sound = npz(("holds.npy", header((2,), "|b1") + b"\0\1"))
     stored = npz(("holds.npy", header((2,), "|b1") + b"\0\1"), method=zipfile.ZIP_STORED)

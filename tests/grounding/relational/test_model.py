@@ -132,8 +132,8 @@ def standing() -> RelationalModel:
 def test_without_a_ranker_it_holds_where_all_is_kept(standing: RelationalModel) -> None:
     """The brick stands with its middle 0.02 m above the table; off by more than 0.03 m it does not hold."""
     situation = on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0))
-    heights, places = [0.02, 0.045, 0.055, -0.015], [0.0, 0.0, 0.0, 0.0]
-    poses = np.stack([Pose((x, 0.0, TOP + z)).matrix for x, z in zip(places, heights, strict=True)])
+    heights = (0.02, 0.045, 0.055, -0.015)
+    poses = np.stack([Pose((0.0, 0.0, TOP + height)).matrix for height in heights])
     assert standing.classify(situation, poses) == pytest.approx([1.0, 1.0, 0.0, 0.0])
     over = standing.classify(situation, Pose((0.45, 0.0, TOP + 0.02)).matrix[None])
     assert over[0] < 1e-3
