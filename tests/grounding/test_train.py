@@ -10,7 +10,6 @@ import pytest
 from grounding import train as module
 from grounding.certainty import ENOUGH, REASON
 from grounding.dataset import read_dataset
-from grounding.relational import training
 from grounding.train import TrainArgs, check, encoder_of, measure, train
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
