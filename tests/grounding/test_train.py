@@ -95,6 +95,8 @@ def test_a_ranker_that_is_right_as_often_as_chance_does_not_judge(
 ) -> None:
     """Of many labels the validation split tells it; half of these hold."""
 
+    from grounding.relational import training  # needs torch, as only this test does
+
     many = read_dataset(stored).take(np.resize(np.arange(4), ENOUGH))
     net = training.RankerNet(8, 4).arrays()
     monkeypatch.setattr(module, "MANY", ENOUGH)
