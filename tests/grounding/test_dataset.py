@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -209,3 +210,5 @@ def test_all_shapes_come_back_as_they_were_written(tmp_path: Path) -> None:
                 assert found.shape == part.shape
     write_dataset(tmp_path / "again.npz", again)
     assert (tmp_path / "again.npz").read_bytes() == (tmp_path / "d.npz").read_bytes()
+    with zipfile.ZipFile(tmp_path / "d.npz") as archive:  # whenever it was written
+        assert {one.date_time for one in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
