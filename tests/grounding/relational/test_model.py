@@ -152,6 +152,14 @@ def test_what_keeps_what_all_have_kept_is_proposed_first(standing: RelationalMod
     assert downs.shape == (3, 3, 3)
 
 
+def test_what_misses_a_bound_is_behind_all_that_misses_none(standing: RelationalModel) -> None:
+    """Over the edge by 0.1 and by 0.2 m, where no demonstration was; the farther, the worse."""
+    view = RegionFrame(on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0)))
+    poses = np.stack([Pose((x, 0.0, 0.02)).matrix for x in (0.0, 0.45, 0.55)])
+    kept, over, farther = standing._scores(view.measure(poses))
+    assert kept > 0.0 > HOPELESS - 50.0 > over > farther
+
+
 def test_what_rests_on_no_face_is_not_proposed_and_does_not_hold(standing: RelationalModel) -> None:
     ball = geometry_of((Part(Sphere(0.05)),))
     assert ball.faces == ()
