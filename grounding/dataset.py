@@ -19,15 +19,21 @@ from numpy.typing import NDArray
 
 from grounding.body_geometry import BodyGeometry
 from grounding.checks import check_arrays, check_card
-from grounding.npz import MOST_BYTES, read_npz
 from grounding.pair import read_pair, write_pair
 from grounding.relation_scene import Placed, Region, RelationScene, near
 from tamp.errors import InputError
 from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import Box, Cylinder, Hull, Part, Sphere
+from tamp.system.npz import read_npz
 
 FORMAT = "tamp demonstrations 1"
 """What the card's `format` must say."""
+
+MOST_BYTES = 400_000_000
+"""Of all arrays together, unpacked: 200,000 scenes."""
+
+MOST_ARRAYS = 100
+"""Of a file; a data set has about twenty."""
 
 Floats = NDArray[np.float64]
 
@@ -181,7 +187,7 @@ def read_dataset(path: Path) -> Dataset:
         raise InputError(error.message, file=path.with_suffix(".json"), remedy=remedy) from None
 
     try:
-        arrays = read_npz(pair.content)
+        arrays = read_npz(pair.content, most_bytes=MOST_BYTES, most_members=MOST_ARRAYS)
         check_arrays(arrays, card)
         geometry = _unpacked({name: arrays.pop(name) for name in _GEOMETRY})
         templates = dict(zip(card.pop("templates"), geometry, strict=True))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from grounding import chunks as module
 from grounding.dataset import Dataset, read_dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate, kinds_of
@@ -52,34 +50,6 @@ def test_training_and_test_share_no_body(data: Dataset, tmp_path: Path) -> None:
         )
 
 
-def test_same_seed_same_bytes_also_after_an_interruption(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(module, "CHUNK", 4)
-    job, whole, resumed = (
-        Job("on", "train", 8, seed=3),
-        tmp_path / "whole.npz",
-        tmp_path / "resumed.npz",
-    )
-    generate(job, whole, workers=1)
-
-    def stop(done: int, total: int) -> None:
-        if done == 4:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        generate(job, resumed, workers=1, progress=stop)
-    assert not resumed.exists()
-    seen: list[int] = []
-    generate(job, resumed, workers=1, progress=lambda done, total: seen.append(done))
-    assert seen == [4, 8] and whole.read_bytes() == resumed.read_bytes()
-    again = read_dataset(whole)
-    assert all(
-        np.array_equal(again.arrays[name], read_dataset(resumed).arrays[name])
-        for name in again.arrays
-    )
-
-
 def test_a_damaged_data_set_is_refused(data: Dataset, tmp_path: Path) -> None:
     path = tmp_path / "small.npz"
     generate(Job(data.relation, "train", 2), path, workers=1)
@@ -105,3 +75,8 @@ def test_separations_never_promise_too_much(data: Dataset) -> None:
                     compared += 1
                     assert bounds[contact.obstacle] < contact.distance + 0.006
     assert compared > 3
+
+
+def test_an_unknown_layout_is_named(tmp_path) -> None:
+    with pytest.raises(InputError, match="unknown layout 'papre'"):
+        generate(Job("on", "train", 4, layout="papre"), tmp_path / "x.npz", workers=1)

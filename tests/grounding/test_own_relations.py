@@ -11,9 +11,8 @@ import numpy as np
 import pytest
 
 import tamp
-from grounding.cli import BAD_INPUT, DONE, run
-from grounding.collect import Demonstration, collect, read_demonstrations
-from grounding.dataset import read_dataset, write_dataset
+from grounding.cli import DONE, run
+from grounding.collect import collect, read_demonstrations
 from grounding.registry import load_grounding
 from grounding.train import train
 from grounding.weights import write_weights
@@ -23,104 +22,10 @@ from tamp.geometric.scene.pose import Pose
 from tamp.geometric.stability.placement import placed_pose
 from tamp.verification.verify import verify
 
-SCENE = """robot: {{model: panda_mobile, base: [0.0, 0.0, 0.0]}}
-room: {{x: [-2.5, 2.5], y: [-2.5, 2.5]}}
-bodies:
-  table: {{furniture: table, size: [1.2, 0.7, 0.72], at: [1.6, 0.0, 0.0]}}
-  tray:
-    {{box: [0.3, 0.2, 0.02], on: table, at: [0.3, 0.0], surfaces: {{tray_top: {{at: [0, 0, 0.01], size: [0.3, 0.2]}}}}}}
-  can: {{cylinder: {{radius: 0.033, height: 0.102}}, on: tray_top, at: [0.05, 0.02]}}
-  jar: {{cylinder: {{radius: 0.03, height: 0.15}}, on: table, at: [-0.3, 0.1]}}
-goal: {goal}
-"""
-
 
 @pytest.fixture
 def kitchen(root: Path) -> Path:
     return root / "examples/kitchen"
-
-
-def scene(folder: Path, goal: str) -> Path:
-    path = folder / "scene.yaml"
-    path.write_text(SCENE.format(goal=goal))
-    return path
-
-
-def test_goals_say_what_holds(tmp_path: Path) -> None:
-    path = scene(tmp_path, "(and (Stacked can tray_top) (not (stacked jar TABLE)) (on jar table))")
-    first, second = read_demonstrations("stacked", [path])
-    assert (first.arguments, first.holds) == (("can", "tray_top"), True)
-    assert (second.arguments, second.holds) == (("jar", "table"), False)
-    data = collect("stacked", [first, second])
-    assert data.relation == "stacked" and data.holds.tolist() == [True, False]
-    write_dataset(tmp_path / "stacked.npz", data)
-    again = read_dataset(tmp_path / "stacked.npz")
-    assert [example.names for example in again] == [
-        ("tray", "can", "table", "jar"),
-        ("table", "jar", "tray", "can"),
-    ]
-    situation = again[0].situation
-    assert np.allclose(
-        situation.T_world_region, first.scene.world_pose(first.scene.surfaces["tray_top"]).matrix
-    )
-    assert np.allclose(situation.body.matrix, first.scene.bodies["can"].pose.matrix)
-
-
-def test_bodies_of_one_name_and_two_shapes_are_told_apart(tmp_path: Path) -> None:
-    one = next(iter(read_demonstrations("stacked", [scene(tmp_path, "(stacked jar table)")])))
-    text = (tmp_path / "scene.yaml").read_text().replace("height: 0.15", "height: 0.2")
-    (tmp_path / "scene.yaml").write_text(text)
-    other = next(iter(read_demonstrations("stacked", [tmp_path])))
-    data = collect("stacked", [one, other])
-    first, second = (example.situation.body.form.corners[1, 2] for example in data)
-    assert (first, second) == pytest.approx((0.075, 0.1))
-    assert {"jar", "jar#2", "table"} <= {*data.templates} and len(data.templates) == 5
-
-
-def test_what_would_not_stay_is_warned_of(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    path = scene(tmp_path, "(and (stacked can tray_top) (stacked jar table))")
-    path.write_text(
-        path.read_text().replace("at: [-0.3, 0.1]", "at: [-0.3, 0.1], rpy: [90 deg, 0 deg, 0 deg]")
-    )
-    assert run(["collect", "stacked", str(path), "--out", str(tmp_path / "x.npz")]) == DONE
-    said = capsys.readouterr().err.splitlines()
-    face = f"warning: {path}:9:35: jar stands on none of its stable faces (1 scene): no plan will put it down so"
-    assert face in said
-
-
-@pytest.mark.parametrize(
-    ("goal", "message"),
-    [
-        ("(on jar table)", "scene.yaml:9: the goal says nothing of 'stacked'"),
-        ("(stacked jar)", "a demonstration names a body, and a surface or container"),
-        ("(stacked jra table)", "scene.yaml:9:16: unknown object 'jra'"),
-        ("(stacked jar can)", "scene.yaml:9: 'can' is no surface or container"),
-        ("(stacked table table)", "'table' is a part of 'table' itself"),
-    ],
-)
-def test_what_is_wrong_with_a_demonstration(
-    goal: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert (
-        run(["collect", "stacked", str(scene(tmp_path, goal)), "--out", str(tmp_path / "x.npz")])
-        == BAD_INPUT
-    )
-    assert message in capsys.readouterr().err
-
-
-def test_there_must_be_demonstrations(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(tamp.InputError, match="no demonstrations of 'stacked'"):
-        collect("stacked", [])
-    found = next(iter(read_demonstrations("stacked", [scene(tmp_path, "(stacked jar table)")])))
-    with pytest.raises(tamp.InputError, match="'lamp' is no body"):
-        collect("stacked", [Demonstration(found.scene, ("lamp", "table"))])
-    (tmp_path / "empty").mkdir()
-    assert run(["collect", "stacked", str(tmp_path / "empty")]) == BAD_INPUT
-    assert "no .yaml files in this folder" in capsys.readouterr().err
-    assert run(["train", "stacked"]) == BAD_INPUT
-    assert "tamp-learn collect stacked FILES makes its data" in capsys.readouterr().err
 
 
 def test_what_lies_is_learned_from_a_dozen_demonstrations(kitchen: Path, tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from grounding.registry import (
     shipped_model,
     shipped_weights,
 )
-from grounding.train import OPTIONS, TRAINERS, TrainArgs, check
+from grounding.train import OPTIONS, TRAINERS
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 from tamp.geometric.samplers.placements import SurfacePlacements
@@ -123,20 +123,3 @@ def test_weights_of_something_else(
     write_weights(path, Weights({}, {"model": trained, "relation": "on"}))
     with pytest.raises(InputError, match=message):
         load_model(path, wanted)
-
-
-@pytest.mark.parametrize(
-    ("model", "args", "message"),
-    [
-        ("flow", TrainArgs(scheme="both"), "model 'flow' has no scheme"),
-        ("tree-bb", TrainArgs(iterations=3), "model 'tree-bb' has no iterations"),
-        ("mlp-bb", TrainArgs(encoder=Path("e.safetensors")), "model 'mlp-bb' has no encoder"),
-        ("gnn-pc", TrainArgs(), "Train one: tamp-learn encoder on"),
-        ("uniform", TrainArgs(), "'uniform' needs no training"),
-        ("uniform+gnn", TrainArgs(), "Train that: tamp-learn train on --model gnn-bb"),
-        ("transfre", TrainArgs(), "Did you mean 'transfer'"),
-    ],
-)
-def test_what_cannot_be_trained_is_said(model: str, args: TrainArgs, message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        check("on", model, args)

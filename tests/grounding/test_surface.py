@@ -8,27 +8,11 @@ import numpy as np
 import pytest
 
 from grounding.relation_scene import relation_scene_of
-from grounding.runtime import Grounding, laid
+from grounding.runtime import Grounding
 from grounding.surface import DEPTH, SurfaceModel
-from tamp.geometric.scene.pose import Pose
 from tamp.geometric.scene.scene import CONTACT_GAP, Box, Scene
-from tamp.geometric.stability.placement import Placement
-from tamp.geometric.stability.stable_poses import stable_faces_of
-from tests.geometric.making import body, crate, scene, table
-
-STANDS = 0.5 + CONTACT_GAP + 0.1
-
-
-def with_brick(
-    x: float = 0.2, y: float = 0.1, z: float = STANDS, roll: float = 0.0, *, beside: float = 0.0
-) -> Scene:
-    """A brick of 0.06 x 0.1 x 0.2 m on a table half a metre high, another one `beside` metres along x."""
-    brick = body("brick", Box((0.06, 0.1, 0.2)), (x, y, z))
-    pose = Pose.from_xyz_rpy((x, y, z), (roll, 0.0, 0.0))
-    bodies = [table(), crate(), type(brick)(**{**vars(brick), "pose": pose})]
-    return scene(
-        *bodies, *([body("other", Box((0.06, 0.1, 0.2)), (x + beside, y, z))] if beside else [])
-    )
+from tests.geometric.making import body, crate, scene
+from tests.grounding.forms import STANDS, with_brick
 
 
 def holds(made: Scene, place: str = "table") -> float:
@@ -80,17 +64,3 @@ def test_nothing_is_proposed_under_too_low_a_ceiling_or_of_no_number() -> None:
     assert SurfaceModel().propose(situation, 5, np.random.default_rng(0)).shape == (0, 4, 4)
     fine = relation_scene_of(with_brick(), ("brick", "table"))
     assert SurfaceModel().propose(fine, 0, np.random.default_rng(0)).shape == (0, 4, 4)
-
-
-def test_a_pose_near_the_region_becomes_a_placement_on_its_face() -> None:
-    made = with_brick()
-    faces = stable_faces_of(made.bodies["brick"])
-    rotation, pose = faces.ways[0].rotation, made.bodies["brick"].pose
-    found = laid(made, ("brick", "table"), rotation, pose.matrix)
-    assert isinstance(found, Placement) and (found.region, found.face) == ("table", 0)
-    assert (found.x, found.y) == pytest.approx((0.2, 0.1))
-    high = Pose((0.2, 0.1, 2.0))
-    assert laid(made, ("brick", "table"), rotation, high.matrix) == high
-    assert laid(
-        made, ("brick", "table"), np.eye(3)[[1, 2, 0]] * 0.5, pose.matrix
-    ) == Pose.from_matrix(pose.matrix)

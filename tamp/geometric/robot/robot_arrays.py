@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import zipfile
-import zlib
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
@@ -12,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tamp.errors import InputError
+from tamp.system.npz import read_npz
+from tamp.system.reading import read_bytes
 
 MOST_BYTES = 500_000_000
 """Of all arrays of a file together."""
+
+MOST_ARRAYS = 10_000
+"""Of a file: the shipped robots have up to 144, two for each hull."""
 
 LARGEST = 1e9
 """No number is as large."""
@@ -31,19 +34,10 @@ def read_arrays(file: Path) -> dict[str, NDArray[Any]]:
     if not file.is_file():
         raise InputError(f"{file.name} is missing", file=file, remedy=REMEDY)
     try:
-        with file.open("rb") as stream:
-            with zipfile.ZipFile(stream) as packed:
-                size = sum(one.file_size for one in packed.infolist())
-            if size > MOST_BYTES:
-                raise damaged(file, f"it unpacks to {size:,} bytes, {MOST_BYTES:,} at most")
-            stream.seek(0)
-            with np.load(stream, allow_pickle=False) as arrays:
-                return {name: arrays[name] for name in arrays.files}
-    except (
-        OSError, ValueError, KeyError, EOFError, TypeError, AttributeError, MemoryError,
-        NotImplementedError, RuntimeError, SyntaxError, zipfile.BadZipFile, zlib.error,
-    ) as error:  # fmt: skip
-        raise damaged(file, " ".join(str(error).split())) from None
+        content = read_bytes(file, MOST_BYTES, kind="file of arrays")
+        return read_npz(content, most_bytes=MOST_BYTES, most_members=MOST_ARRAYS)
+    except InputError as error:
+        raise damaged(file, error.message) from None
 
 
 def damaged(file: Path, what: str) -> InputError:

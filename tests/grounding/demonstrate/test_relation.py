@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grounding.demonstrate.models import MODELS, sample_body
 from grounding.demonstrate.relation import (
     KINDS,
     PRESETS,
@@ -74,9 +73,3 @@ def test_what_is_written_is_read_again(
 def test_what_is_refused(text: str, says: str) -> None:
     with pytest.raises(InputError, match=says):
         parse_relation(text)
-
-
-def test_every_kind_but_surfaces_has_bodies(rng) -> None:
-    for kind in KINDS[:-1]:
-        chosen, entry = sample_body(kind, rng)
-        assert chosen in MODELS and entry

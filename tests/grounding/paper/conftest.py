@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from grounding.dataset import Dataset
+from grounding.generate import Job, generate
+from grounding.paper.features import BoxFeatures, FeatureObservation
+from grounding.weights import Weights
 from tamp.geometric.scene.scene import Box, Part
 
 TEMPLATES = {"table": (0.8, 0.6, 0.4), "brick": (0.1, 0.06, 0.04), "cube": (0.06, 0.06, 0.06)}
@@ -54,3 +57,36 @@ def boxes_on_a_table(count: int, seed: int = 0) -> Dataset:
 @pytest.fixture(scope="session")
 def data() -> Dataset:
     return boxes_on_a_table(240)
+
+
+@pytest.fixture(scope="session")
+def seen(data: Dataset) -> list[FeatureObservation]:
+    """Three scenes of boxes, with none, one and three others around."""
+    observations = [BoxFeatures().observe(example.situation) for example in data]
+    chosen = [next(o for o in observations if len(o.others) == count) for count in (0, 1, 3)]
+    assert len(chosen) == 3
+    return chosen
+
+
+@pytest.fixture(scope="session", params=["on", "inside"])
+def laid_out(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Dataset:
+    """Scenes of each relation as the paper lays them out."""
+    job = Job(request.param, "test", 40, layout="paper")
+    return generate(job, tmp_path_factory.mktemp("paper") / "small.npz", workers=1)
+
+
+@pytest.fixture(scope="session")
+def tree(data: Dataset) -> Weights:
+    """A tree of all the boxes."""
+    from grounding.paper.tree_training import train_tree
+
+    return train_tree(data, "tree-bb", samples=240, seed=0)
+
+
+@pytest.fixture(scope="session")
+def encoder(data: Dataset) -> Weights:
+    """An encoder that was hardly trained."""
+    from grounding.paper.encoders import EncoderOptions, train_encoder
+
+    few = EncoderOptions(iterations=2, batch=4, validation=4, points=64, validate_every=1)
+    return Weights(train_encoder(data, "conv", "one", few)[0], {})

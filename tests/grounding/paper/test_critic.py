@@ -35,19 +35,3 @@ def test_the_gradient_by_hand_is_that_of_automatic_differentiation():
         torch.testing.assert_close(
             other, torch.zeros_like(other) if one is None else one, atol=1e-4, rtol=1e-4
         )
-
-
-def test_a_step_of_the_optimiser_is_torchs_rmsprop():
-    ensemble = Ensemble(critic_shapes(FEATURES), [torch.Generator().manual_seed(0)])
-    weights = [tensor.detach().clone().requires_grad_() for tensor in ensemble.weights.values()]
-    optimiser = torch.optim.RMSprop(weights, lr=1e-3)
-    random = torch.Generator().manual_seed(1)
-    for _ in range(3):
-        for mine, other in zip(ensemble.parts(ensemble.gradient), weights, strict=True):
-            other.grad = torch.randn(other.shape, generator=random)
-            mine.copy_(other.grad)
-        optimiser.step()
-        ensemble.update(1e-3)
-    assert ensemble.gradient.abs().max() == 0
-    for mine, other in zip(ensemble.weights.values(), weights, strict=True):
-        torch.testing.assert_close(mine, other)

@@ -1,6 +1,4 @@
-"""Arrays out of a .npz file that is not to be trusted: sizes and types are looked at before
-anything is unpacked.
-"""
+"""Reading of .npz files: sizes and types of the arrays are checked before anything is unpacked."""
 
 from __future__ import annotations
 
@@ -16,43 +14,49 @@ from numpy.typing import NDArray
 
 from tamp.errors import InputError
 
-MOST_BYTES = 400_000_000
-"""Of all arrays together, unpacked: 200,000 scenes."""
-
-MOST_MEMBERS = 100
-"""Arrays of a file; a data set has about twenty."""
-
 KINDS = {"b": "truth values", "i": "integers", "u": "integers", "f": "numbers"}
 """NumPy's kinds of arrays that are read, in words."""
 
 _END = b"PK\x05\x06"
+"""What the end of a zip file's directory begins with."""
+
+_ENTRY_BYTES = 1000
+"""The largest entry of that directory on average: its member's name and 46 bytes."""
 
 
 class Header(NamedTuple):
-    """The header of an array's file: its shape, its type, and the bytes that it takes itself."""
+    """The header of an array's file: its shape, the order of its memory, its type, and the bytes
+    that it takes itself.
+    """
 
     shape: tuple[int, ...]
+    fortran: bool
     dtype: np.dtype[Any]
     size: int
 
 
-def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
-    """Unpack the arrays of a .npz file, as `numpy.savez` writes it.
+def read_npz(content: bytes, *, most_bytes: int, most_members: int) -> dict[str, NDArray[Any]]:
+    """Read the arrays of a .npz file by their names, as `numpy.savez` writes it.
+
+    Args:
+        content: The file's bytes, which are not trusted.
+        most_bytes: Of all arrays together, unpacked.
+        most_members: Arrays.
 
     Raises:
         InputError: It is none; an array is of objects or text, claims what is not there, or all are
-            too large. The message names the array.
+            too large or too many. The message names the array, and no file.
     """
-    _check_end(content)
+    _check_end(content, most_members)
 
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.infolist()
             total = sum(member.file_size for member in members)
-            if total > MOST_BYTES:
+            if total > most_bytes:
                 raise InputError(
                     f"its arrays take {total / 1e6:,.0f} MB, "
-                    f"at most {MOST_BYTES / 1e6:,.0f} are read"
+                    f"at most {most_bytes / 1e6:,.0f} are read"
                 )
 
             return dict(_member(archive, member) for member in members)
@@ -70,14 +74,14 @@ def read_npz(content: bytes) -> dict[str, NDArray[Any]]:
         raise InputError(f"it is damaged: {error}") from None
 
 
-def _check_end(content: bytes) -> None:
+def _check_end(content: bytes, most: int) -> None:
     """Refuse a list of members that would be long to read."""
     start = content.rfind(_END, max(0, len(content) - 65_557))
     if start < 0 or start + 22 > len(content):
         raise InputError("it is damaged: this is no .npz file, or it is cut off")
     (count, size) = struct.unpack_from("<HI", content, start + 10)
-    if count > MOST_MEMBERS or size > MOST_MEMBERS * 1000:
-        raise InputError(f"it has more than {MOST_MEMBERS} members")
+    if count > most or size > most * _ENTRY_BYTES:
+        raise InputError(f"it has more than {most} members")
 
 
 def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> tuple[str, NDArray[Any]]:
@@ -93,8 +97,9 @@ def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> tuple[str, NDA
             raise InputError(
                 f"array '{name}' claims {claimed:,} bytes, {member.file_size:,} are there"
             )
-    with archive.open(member) as stream:
-        return name, np.lib.format.read_array(stream, allow_pickle=False)
+        content = bytearray(stream.read())  # which can be written to, as numpy's own arrays can
+    order = "F" if header.fortran else "C"
+    return name, np.frombuffer(content, header.dtype).reshape(header.shape, order=order)
 
 
 def _header(stream: Any, name: str) -> Header:
@@ -108,8 +113,8 @@ def _header(stream: Any, name: str) -> Header:
             else np.lib.format.read_array_header_2_0
         )
 
-        shape, _, dtype = reader(stream)
-        return Header(shape, dtype, stream.tell())
+        shape, fortran, dtype = reader(stream)
+        return Header(shape, fortran, dtype, stream.tell())
     except (
         ValueError,
         TypeError,

@@ -1,4 +1,4 @@
-"""Relational groundings: coordinates there and back, proposals that fit, the runtime and torch, damaged weights."""
+"""Relational groundings: proposals that hold, the best first, and weights that are none."""
 
 from __future__ import annotations
 
@@ -8,43 +8,25 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import torch
 
+from grounding.body_geometry import geometry_of
 from grounding.dataset import Dataset
-from grounding.layers import dense, layers_of
 from grounding.oracles import ItemOf, Verdict, drop_verdicts
 from grounding.registry import load_model
 from grounding.relational.coordinates import RelationalCoordinates
-from grounding.relational.flow import COORDINATES, Flow, condition, surroundings
-from grounding.relational.flow_training import FlowNet, SceneBatch
 from grounding.relational.measures import RegionFrame
-from grounding.relational.model import RelationalModel
-from grounding.relational.ranker import Ranker, features
-from grounding.relational.training import RankerNet
-from grounding.torch_layers import arrays_of
-from grounding.train import TRAINERS, TrainArgs, measure
+from grounding.relational.model import HOPELESS, RelationalModel, relational_weights
+from grounding.relational.proposals import Transfer
+from grounding.train import TRAINERS, TrainArgs
 from grounding.weights import Weights, write_weights
 from tamp.errors import InputError
+from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.scene import Part, Sphere
 from tamp.simulation.engines import open_drops
+from tests.grounding.forms import TOP, at, box, on_table
+from tests.grounding.relational.situations import bricks
 
 Trained = dict[tuple[str, str], Weights]
-
-
-@pytest.mark.parametrize("relation", ["on", "inside"])
-def test_a_chart_finds_poses_again(scenes: dict[str, Dataset], relation: str) -> None:
-    measured = [measure(example) for example in scenes[relation] if example.holds]
-    chart = RelationalCoordinates.fit(measured)
-    found = []
-    for one in measured:
-        again = chart.decode(one.view, one.face, chart.encode(one).coordinates[None])
-        assert again.low == pytest.approx(one.view.measure(again.poses).low, abs=1e-12)
-        turn = again.poses[0, :3, :3].T @ one.poses[0, :3, :3]
-        moved = np.abs(again.poses[0, :3, 3] - one.poses[0, :3, 3]).max()
-        found.append(moved < 0.01 and np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1)) < 0.06)
-    assert (
-        np.mean(found) > 0.85
-    )  # what leans on a wall, or stands on an edge of many, is proposed upright
-    assert chart.contained is (relation == "inside")
 
 
 @pytest.mark.parametrize("model", ["transfer", "flow"])
@@ -96,60 +78,6 @@ def test_same_seed_same_weights(scenes: dict[str, Dataset], trained: Trained, mo
         assert np.array_equal(array, again.arrays[name]), name
 
 
-def test_numpy_ranks_as_torch_does(scenes: dict[str, Dataset]) -> None:
-    net = RankerNet(64, 16)
-    ranker = Ranker(net.arrays())
-    for example in scenes["on"].take(range(20)):
-        view = RegionFrame(example.situation)
-        poses = np.repeat(view.T_region_world @ example.situation.body.matrix[None], 5, axis=0)
-        poses[:, :2, 3] += np.random.default_rng(0).normal(scale=0.1, size=(5, 2))
-        measured = view.measure(poses)
-        pose, pair = (torch.tensor(array) for array in features(measured))
-        with torch.no_grad():
-            logits = net(pose, pair, torch.zeros(pair.shape[:2], dtype=torch.bool)).numpy()
-        assert ranker.logits(measured) == pytest.approx(logits, abs=1e-5)
-
-
-def test_numpy_flows_as_torch_does(scenes: dict[str, Dataset]) -> None:
-    net, rng = FlowNet(32), np.random.default_rng(0)
-    chart = RelationalCoordinates.fit(
-        [measure(example) for example in scenes["on"] if example.holds]
-    )
-    flow = Flow(chart, {**net.arrays(), "scale": np.ones(COORDINATES, np.float32)})
-    for example in scenes["on"].take(range(20)):
-        view = RegionFrame(example.situation)
-        known = np.repeat(condition(view)[:1], 3, axis=0)
-        around, half = surroundings(view), np.asarray(view.region.size[:2] / 2, np.float32)
-        x, time = (
-            rng.normal(size=(3, COORDINATES)).astype(np.float32),
-            np.full((3, 1), 0.5, np.float32),
-        )
-        padded = np.zeros((1, len(around) + 1, 6), np.float32)
-        padded[0, : len(around)] = around
-        missing = np.arange(len(around) + 1) == len(around)
-        several = SceneBatch(
-            torch.tensor(known), torch.tensor(padded).expand(3, -1, -1), torch.tensor(missing).expand(3, -1),
-            torch.tensor(half).expand(3, -1),
-        )  # fmt: skip
-        with torch.no_grad():
-            expected = net(torch.tensor(x), torch.tensor(time), several).numpy()
-        assert flow.velocity(x, time, known, around, half) == pytest.approx(expected, abs=1e-5)
-
-
-def test_dense_layers_are_checked() -> None:
-    net = torch.nn.ModuleList([torch.nn.Linear(3, 4), torch.nn.Linear(4, 2)])
-    arrays = arrays_of(net=net)
-    x = np.random.default_rng(0).normal(size=(5, 3)).astype(np.float32)
-    with torch.no_grad():
-        expected = net[1](torch.relu(net[0](torch.tensor(x)))).numpy()
-    assert dense(layers_of(arrays, "net", 3, 2), x) == pytest.approx(expected, abs=1e-6)
-    for wrong in ({"inputs": 2}, {"outputs": 3}):
-        with pytest.raises(ValueError, match="net"):
-            layers_of(arrays, "net", **wrong)
-    with pytest.raises(ValueError, match=r"net\.1"):
-        layers_of({**arrays, "net.1.weight": arrays["net.0.weight"]}, "net")
-
-
 def test_weights_that_are_no_such_grounding(tmp_path: Path, trained: Trained) -> None:
     weights, path = trained["inside", "transfer"], tmp_path / "some.safetensors"
     write_weights(path, weights)
@@ -188,3 +116,53 @@ def test_the_runtime_needs_no_torch(tmp_path: Path, trained: Trained) -> None:
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "False"
+
+
+@pytest.fixture(scope="module")
+def standing() -> RelationalModel:
+    """What 20 standing bricks say, without a ranker."""
+    measured, holds = bricks(40)
+    shown = [one for one, stands in zip(measured, holds, strict=True) if stands]
+    chart = RelationalCoordinates.fit(shown)
+    proposals = Transfer.of(chart, [chart.encode(one) for one in shown])
+    card = {"model": "transfer", "ranks": False, "classifies": False}
+    return RelationalModel(relational_weights(chart, proposals, {}, card))
+
+
+def test_without_a_ranker_it_holds_where_all_is_kept(standing: RelationalModel) -> None:
+    """The brick stands with its middle 0.02 m above the table; off by more than 0.03 m it does not hold."""
+    situation = on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0))
+    heights = (0.02, 0.045, 0.055, -0.015)
+    poses = np.stack([Pose((0.0, 0.0, TOP + height)).matrix for height in heights])
+    assert standing.classify(situation, poses) == pytest.approx([1.0, 1.0, 0.0, 0.0])
+    over = standing.classify(situation, Pose((0.45, 0.0, TOP + 0.02)).matrix[None])
+    assert over[0] < 1e-3
+    assert standing.classify(situation, poses[:0]).shape == (0,)
+
+
+def test_what_keeps_what_all_have_kept_is_proposed_first(standing: RelationalModel) -> None:
+    cube = at(box(0.2, 0.2, 0.2), 0.0, 0.0, TOP + 0.1)
+    situation = on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0), cube)
+    poses = standing.propose(situation, 10, np.random.default_rng(0))
+    view = RegionFrame(situation)
+    measured = view.measure(view.T_region_world @ poses)
+    assert len(poses) == 10 and (measured.nearest >= -0.001).all()
+    assert (standing._scores(measured) > HOPELESS).all()
+    _, downs = standing.propose_on_faces(situation, 3, np.random.default_rng(0))
+    assert downs.shape == (3, 3, 3)
+
+
+def test_what_misses_a_bound_is_behind_all_that_misses_none(standing: RelationalModel) -> None:
+    """Over the edge by 0.1 and by 0.2 m, where no demonstration was; the farther, the worse."""
+    view = RegionFrame(on_table(at(box(0.1, 0.06, 0.04), 0.0, 0.0, 1.0)))
+    poses = np.stack([Pose((x, 0.0, 0.02)).matrix for x in (0.0, 0.45, 0.55)])
+    kept, over, farther = standing._scores(view.measure(poses))
+    assert kept > 0.0 > HOPELESS - 50.0 > over > farther
+
+
+def test_what_rests_on_no_face_is_not_proposed_and_does_not_hold(standing: RelationalModel) -> None:
+    ball = geometry_of((Part(Sphere(0.05)),))
+    assert ball.faces == ()
+    situation = on_table(at(ball, 0.0, 0.0, TOP + 0.05))
+    assert standing.propose(situation, 5, np.random.default_rng(0)).shape == (0, 4, 4)
+    assert standing.classify(situation, situation.body.matrix[None]).tolist() == [0.0]
