@@ -25,6 +25,7 @@ def test_measures_keep_their_limits(number: int, made: list[Measure]) -> None:
     one = made[number]
     assert one.holds, (
         f"{one.name}: {one.shown}, not {one.limit}\n{house.circles()}{house.upward()}{house.untested()}"
+        f"{house.without_test_file()}"
     )
 
 
