@@ -17,7 +17,9 @@ class CompilationThreshold:
 
     Attributes:
         module: The module that holds the compiled loops; once it is imported, they are there.
-        load: Entries before the loops are loaded.
+        load: Entries before the loops are loaded, numba with them.
+        beside: Entries before they are loaded where numba has been imported for something else;
+            None for as many.
         compile: Entries before they are compiled, where that has not been done yet.
         entries: Those that plain Python has gone through.
         enough: One of the thresholds, once it is known which.
@@ -26,6 +28,7 @@ class CompilationThreshold:
     module: str
     load: int
     compile: int
+    beside: int | None = None
     entries: int = 0
     enough: int | None = None
 
@@ -39,8 +42,11 @@ class CompilationThreshold:
         self.entries += entries
         if self.module in sys.modules:
             return True
-        if self.entries <= self.load:
+        load = self.load
+        if self.beside is not None and "numba" in sys.modules:
+            load = self.beside
+        if self.entries <= load:
             return False
         if self.enough is None:
-            self.enough = self.load if compiled_before() else self.compile
+            self.enough = load if compiled_before() else self.compile
         return self.entries > self.enough

@@ -57,3 +57,18 @@ def test_work_is_counted_while_the_loops_are_loaded() -> None:
         patch.setitem(sys.modules, MODULE, types.ModuleType(MODULE))
         threshold.pays(20, not_kept)
     assert threshold.pays(1, not_kept)
+
+
+def test_loading_pays_sooner_where_numba_is_there_and_compiling_does_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made = {"load": 10, "compile": 100, "beside": 3}
+    monkeypatch.setitem(sys.modules, "numba", types.ModuleType("numba"))
+    assert [CompilationThreshold(MODULE, **made).pays(n, kept) for n in (3, 4)] == [False, True]
+    assert [CompilationThreshold(MODULE, **made).pays(n, not_kept) for n in (4, 101)] == [
+        False,
+        True,
+    ]
+
+    monkeypatch.delitem(sys.modules, "numba")
+    assert [CompilationThreshold(MODULE, **made).pays(n, kept) for n in (10, 11)] == [False, True]

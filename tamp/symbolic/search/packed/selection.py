@@ -15,6 +15,9 @@ LOAD_THRESHOLD = 2_000_000
 """Entries of relaxed tasks, over all states that plain Python evaluated in this process, before the
 compiled loop is loaded: about as long as loading takes."""
 
+LOAD_BESIDE_NUMBA_THRESHOLD = 100_000
+"""The same where numba has been imported already, as for any scene: loading takes 40 ms then."""
+
 COMPILE_THRESHOLD = 20_000_000
 """Entries before it is compiled, where that has not been done: half as long as compiling takes,
 since nobody's time is spent on that."""
@@ -25,7 +28,10 @@ KEPT = ("run", "eliminate")
 
 
 THRESHOLD = CompilationThreshold(
-    "tamp.symbolic.search.packed.compiled", LOAD_THRESHOLD, COMPILE_THRESHOLD
+    "tamp.symbolic.search.packed.compiled",
+    LOAD_THRESHOLD,
+    COMPILE_THRESHOLD,
+    LOAD_BESIDE_NUMBA_THRESHOLD,
 )
 
 
