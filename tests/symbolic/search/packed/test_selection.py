@@ -13,7 +13,16 @@ from tamp.symbolic.search.packed import selection
 
 def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(sys.modules, "tamp.symbolic.search.packed.compiled", raising=False)
-    for kept, enough in ((False, selection.COMPILE_THRESHOLD), (True, selection.LOAD_THRESHOLD)):
+    beside = selection.LOAD_BESIDE_NUMBA_THRESHOLD
+    for numba, kept, enough in (
+        (True, False, selection.COMPILE_THRESHOLD),
+        (True, True, beside),
+        (False, True, selection.LOAD_THRESHOLD),
+    ):
+        if numba:
+            monkeypatch.setitem(sys.modules, "numba", sys)
+        else:
+            monkeypatch.delitem(sys.modules, "numba")
         fresh = replace(selection.THRESHOLD, entries=0, enough=None)
         monkeypatch.setattr(selection, "THRESHOLD", fresh)
         monkeypatch.setattr(selection, "compiled_before", lambda kept=kept: kept)
