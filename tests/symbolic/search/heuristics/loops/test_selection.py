@@ -19,8 +19,7 @@ def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.Monkey
     monkeypatch.delitem(sys.modules, "tamp.symbolic.search.heuristics.loops.compiled")
     monkeypatch.setattr(tiers, "THRESHOLD", replace(tiers.THRESHOLD, entries=0, enough=None))
     monkeypatch.setattr(tiers, "compiled_before", lambda: False)
-    assert tiers.choose(tiers.LOAD_THRESHOLD) is tiers.PLAIN
-    assert tiers.choose(1) is tiers.PLAIN  # compiling takes longer than loading
+    assert tiers.choose(tiers.COMPILE_THRESHOLD) is tiers.PLAIN
     monkeypatch.undo()
     monkeypatch.setattr(tiers, "THRESHOLD", replace(tiers.THRESHOLD, entries=0, enough=None))
     assert tiers.choose(1) is COMPILED
