@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import struct
+import tokenize
 import zipfile
 import zlib
 from typing import Any, NamedTuple
@@ -19,6 +20,9 @@ KINDS = {"b": "truth values", "i": "integers", "u": "integers", "f": "numbers"}
 
 _END = b"PK\x05\x06"
 """What the end of a zip file's directory begins with."""
+
+_LARGE_END = b"PK\x06\x07"
+"""What is put before that end where there are more members, or bytes, than it can tell (zip64)."""
 
 _ENTRY_BYTES = 1000
 """The largest entry of that directory on average: its member's name and 46 bytes."""
@@ -52,6 +56,9 @@ def read_npz(content: bytes, *, most_bytes: int, most_members: int) -> dict[str,
     try:
         with zipfile.ZipFile(io.BytesIO(content)) as archive:
             members = archive.infolist()
+            names = [_name(member) for member in members]
+            if len(set(names)) < len(names):
+                raise InputError("it is damaged: two of its arrays have one name")
             total = sum(member.file_size for member in members)
             if total > most_bytes:
                 raise InputError(
@@ -79,13 +86,21 @@ def _check_end(content: bytes, most: int) -> None:
     start = content.rfind(_END, max(0, len(content) - 65_557))
     if start < 0 or start + 22 > len(content):
         raise InputError("it is damaged: this is no .npz file, or it is cut off")
-    (count, size) = struct.unpack_from("<HI", content, start + 10)
+    if content[start - 20 : start - 16] == _LARGE_END:
+        raise InputError("it has more than 65,535 members, or 4 GB")
+    (count, size, _, comment) = struct.unpack_from("<HIIH", content, start + 10)
+    if start + 22 + comment != len(content):
+        raise InputError("it is damaged: something stands behind its end")
     if count > most or size > most * _ENTRY_BYTES:
         raise InputError(f"it has more than {most} members")
 
 
+def _name(member: zipfile.ZipInfo) -> str:
+    return member.filename.removesuffix(".npy")
+
+
 def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> tuple[str, NDArray[Any]]:
-    name = member.filename.removesuffix(".npy")
+    name = _name(member)
     if member.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
         raise InputError(f"array '{name}' is packed in a way that numpy does not use")
     with archive.open(member) as stream:
@@ -93,6 +108,8 @@ def _member(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> tuple[str, NDA
         claimed = header.size + math.prod(header.shape) * header.dtype.itemsize
         if header.dtype.kind not in KINDS:
             raise InputError(f"array '{name}' holds {_kind(header.dtype)}, not numbers")
+        if any(type(length) is not int for length in header.shape):
+            raise InputError(f"array '{name}' is damaged: its shape is {header.shape}")
         if any(length < 0 for length in header.shape) or claimed != member.file_size:
             raise InputError(
                 f"array '{name}' claims {claimed:,} bytes, {member.file_size:,} are there"
@@ -119,6 +136,7 @@ def _header(stream: Any, name: str) -> Header:
         ValueError,
         TypeError,
         SyntaxError,
+        tokenize.TokenError,
         RecursionError,
         OverflowError,
         MemoryError,

@@ -39,6 +39,10 @@ def header(shape: tuple[int, ...], kind: str = "<f8") -> bytes:
 def archives() -> dict[str, tuple[bytes, str]]:
     sound = npz(("holds.npy", header((2,), "|b1") + b"\0\1"))
     stored = npz(("holds.npy", header((2,), "|b1") + b"\0\1"), method=zipfile.ZIP_STORED)
+    half = b"{'descr': '<f8', 'shape': (3,), \n"
+    word = b"{'descr': '<f8', 'fortran_order': False, 'shape': (True,), }\n"
+    begun, said = (b"\x93NUMPY\x01\x00" + struct.pack("<H", len(h)) + h for h in (half, word))
+    large = npz(*((f"{n}.npy", b"") for n in range(66_000)))
     lies = bytearray(sound)
     place = lies.rfind(b"PK\x05\x06")
     lies[place + 10 : place + 12] = struct.pack("<H", 60_000)
@@ -66,6 +70,11 @@ def archives() -> dict[str, tuple[bytes, str]]:
         "packed": (npz(("holds.npy", b"x"), method=zipfile.ZIP_BZIP2), "packed in a way"),
         "members": (npz(*((f"{n}.npy", b"") for n in range(200))), "more than 100 members"),
         "lies": (bytes(lies), "more than 100 members"),
+        "half a header": (npz(("holds.npy", begun)), "array 'holds' is damaged"),
+        "a shape of words": (npz(("holds.npy", said + b"0" * 8)), "its shape is (True,)"),
+        "more than the end can tell": (large, "more than 65,535 members"),
+        "one name": (npz(("a.npy", b""), ("a", b"")), "two of its arrays have one name"),
+        "something behind": (sound + b"x", "something stands behind its end"),
         "cut": (sound[:-30], "it is damaged"),
         "empty": (b"", "it is damaged"),
         "zeros": (b"\0" * 1000, "it is damaged"),

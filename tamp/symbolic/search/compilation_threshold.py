@@ -5,9 +5,12 @@ Both find the same, so the choice is about time alone, never about a result.
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass
@@ -50,3 +53,20 @@ class CompilationThreshold:
         if self.enough is None:
             self.enough = load if compiled_before() else self.compile
         return self.entries > self.enough
+
+
+def digest_of(folder: Path, modules: Sequence[str]) -> str:
+    """Hash the sources of a folder's modules: what names kernels that are compiled of them all.
+
+    Numba's own cache watches the one file that a kernel stands in.
+    """
+    sources = b"".join((folder / f"{name}.py").read_bytes() for name in modules)
+    return f"{zlib.crc32(sources):08x}"
+
+
+def are_kept(folder: Path, modules: Sequence[str], kernels: Sequence[str]) -> bool:
+    """Check that numba's cache beside the sources has all kernels, compiled of these sources."""
+    if "NUMBA_CACHE_DIR" in os.environ:
+        return False
+    made = digest_of(folder, modules)
+    return all(any((folder / "__pycache__").glob(f"*.{name}_{made}-*.nbi")) for name in kernels)

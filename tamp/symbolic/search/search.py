@@ -84,8 +84,9 @@ def search(
     Args:
         instantiated: The task.
         search: A name of `SEARCHES`. "astar" with an admissible heuristic ("lmcut", "hmax",
-            "blind") is optimal; "wastar" and "greedy" are lazy and use preferred operators, "eager"
-            is plain greedy best-first search.
+            "blind") is optimal; where `price` waives guards, with "blind" alone, since the others
+            count a guard's price for each operator that it stands before. "wastar" and "greedy" are
+            lazy and use preferred operators, "eager" is plain greedy best-first search.
         heuristic: A name of `HEURISTICS`, or several: "ff+landmarks". The lazy searches give queues
             to each, "astar" takes the maximum, "eager" the sum.
         weight: Of the estimate in "wastar".
@@ -119,7 +120,8 @@ def search(
         return made
 
     def packed(run: SearchSpace) -> Plan | None:
-        if deadline is not None and deadline.passed:  # compiled loops look only now and then
+        late = deadline is not None and deadline.passed  # compiled loops look only now and then
+        if late and not successors.holds_goal(successors.closure(successors.initial)):
             raise SearchLimitReached(Reason.TIME)
         if search == "greedy" and limit is None:
             return greedy_with_restarts(run, names, seed)

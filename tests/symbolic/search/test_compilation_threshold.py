@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import sys
 import types
+from pathlib import Path
 
 import pytest
 
-from tamp.symbolic.search.compilation_threshold import CompilationThreshold
+from tamp.symbolic.search.compilation_threshold import (
+    CompilationThreshold,
+    are_kept,
+    digest_of,
+)
 
 MODULE = "loops_that_nobody_has"
 
@@ -72,3 +77,26 @@ def test_loading_pays_sooner_where_numba_is_there_and_compiling_does_not(
 
     monkeypatch.delitem(sys.modules, "numba")
     assert [CompilationThreshold(MODULE, **made).pays(n, kept) for n in (10, 11)] == [False, True]
+
+
+def test_only_what_was_compiled_of_these_sources_is_kept(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    (tmp_path / "__pycache__").mkdir()
+    for name in ("one", "other"):
+        (tmp_path / f"{name}.py").write_text(name)
+
+    def kept() -> bool:
+        return are_kept(tmp_path, ["one", "other"], ["explore", "plan"])
+
+    for kernel in ("explore", "plan"):
+        assert not kept()
+        made = digest_of(tmp_path, ["one", "other"])
+        (tmp_path / "__pycache__" / f"x.{kernel}_{made}-7.py311.nbi").write_text("")
+    assert kept()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    assert not kept()  # nobody looks there
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
+    (tmp_path / "other.py").write_text("another")
+    assert not kept()

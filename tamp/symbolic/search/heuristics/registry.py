@@ -93,7 +93,7 @@ def blind(successors: Successors) -> Heuristic:
 
 def lmcut(successors: Successors) -> Heuristic:
     """Estimate by the sum of disjoint landmark cuts' costs: admissible, and the most informed of
-    the admissible ones here.
+    the admissible ones here (with conditional effects hmax may tell more).
     """
     cuts = LandmarkCuts(Relaxation(successors, steps=False))
 

@@ -152,6 +152,13 @@ class Keys:
                     self.members.setdefault((facts, price), []).append(i)
         self.number = {key: number for number, key in enumerate(self.members)}
 
+    def held_by(self, operator: int) -> list[tuple[int, int, float]]:
+        """Return the guards that hold an operator back, with their keys' numbers and prices; not
+        those that no relaxed operator waits for.
+        """
+        held = self.held.get(operator, ())
+        return [(g, self.number[key], key[1]) for g, key in held if key in self.number]
+
 
 def pack_relaxation(
     s: Successors,
@@ -181,13 +188,7 @@ def pack_relaxation(
     for number, members in enumerate(keys.members.values()):
         needs[base + number] = list(members)
 
-    held = CsrLists(
-        (
-            [(g, keys.number[key], key[1]) for g, key in keys.held.get(operator, ())]
-            for operator in range(len(s.operators))
-        ),
-        3,
-    )
+    held = CsrLists((keys.held_by(operator) for operator in range(len(s.operators))), 3)
     rises = CsrLists(keys.rises, 2)
     before_rows, effect_rows, need_rows, groups, members, facts = (
         CsrLists(([(fact,) for fact in row] for row in rows), 1)

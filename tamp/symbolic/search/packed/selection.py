@@ -5,11 +5,9 @@ Both find the same plans, so the choice is about time alone.
 
 from __future__ import annotations
 
-import os
-import zlib
 from pathlib import Path
 
-from tamp.symbolic.search.compilation_threshold import CompilationThreshold
+from tamp.symbolic.search.compilation_threshold import CompilationThreshold, are_kept, digest_of
 
 LOAD_THRESHOLD = 2_000_000
 """Entries of relaxed tasks, over all states that plain Python evaluated in this process, before the
@@ -37,16 +35,12 @@ THRESHOLD = CompilationThreshold(
 
 def digest() -> str:
     """Return what names compiled loops: their sources' hash."""
-    sources = b"".join((FOLDER / f"{name}.py").read_bytes() for name in SOURCES)
-    return f"{zlib.crc32(sources):08x}"
+    return digest_of(FOLDER, SOURCES)
 
 
 def compiled_before() -> bool:
     """Check that numba's cache beside the sources has all loops, made of these sources."""
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return False
-    made = digest()
-    return all(any((FOLDER / "__pycache__").glob(f"*.{name}_{made}-*.nbi")) for name in KEPT)
+    return are_kept(FOLDER, SOURCES, KEPT)
 
 
 def pays(entries: int) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tamp.symbolic.search.operators import Guard
+from tamp.symbolic.search.operators import Guard, Operator
 from tamp.symbolic.search.packed.packing import (
     MOST_BUCKETS,
     CsrLists,
@@ -186,3 +186,19 @@ def test_words_are_those_of_the_state(seed: int) -> None:
     assert rebuilt == [one, other]
     assert sum((word & (1 << 64) - 1) << 64 * w for w, word in enumerate(words_of(one, 4))) == one
     assert signed((1 << 64) - 1) == -1
+
+
+@pytest.mark.parametrize(
+    ("idle", "price"),
+    [
+        (operator("idle", "", "g", static="s", guards=[Guard(facts("x"), None)]), {("s",): math.inf}),
+        (operator("idle", guards=[Guard(facts("x"), None)], when=[("x", "", "", "z")]), {}),
+    ],
+    ids=["too dear for ever", "of effects that nobody reads"],
+)  # fmt: skip
+def test_a_guard_before_what_no_estimate_counts_is_left_out(
+    idle: Operator, price: dict[tuple[str, ...], float]
+) -> None:
+    """Plain Python leaves it out, too; packing ended with a KeyError."""
+    made = packed(task([idle, operator("live", "", "g", cost=2.0)], initial="x"), price)
+    assert made.t.operators == 2

@@ -16,13 +16,21 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from tamp.symbolic.search.heuristics.loops import kernels, landmark_cuts, rows
-from tamp.symbolic.search.heuristics.loops.interface import Kernels
+from tamp.symbolic.search.compilation_threshold import digest_of
+from tamp.symbolic.search.heuristics.loops import (
+    kernels,
+    landmark_cuts,
+    landmark_queue,
+    rows,
+)
+from tamp.symbolic.search.heuristics.loops.interface import FOLDER, SOURCES, Kernels
 from tamp.system.compilation import njit
 
 _I, _F, _N, _C = types.int64[::1], types.float64[::1], types.float64, types.int64
 _ROWS = types.NamedUniTuple(_I, 2, rows.CsrRows)
 _INNER = {"nogil": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+_DIGEST = digest_of(FOLDER, SOURCES)
 
 
 @njit()
@@ -46,6 +54,7 @@ def _reals(values: Sequence[float]) -> Any:
 _names: dict[str, Any] = {
     **vars(rows),
     **vars(kernels),
+    **vars(landmark_queue),
     **vars(landmark_cuts),
     "full": _full,
     "count_up": _count_up,
@@ -55,6 +64,8 @@ _names: dict[str, Any] = {
 def _compile(function: Callable[..., Any], signature: Any = None) -> Callable[..., Any]:
     """Compile a function; without a signature it serves other compiled ones only."""
     copy = FunctionType(function.__code__, _names, function.__name__)
+    if signature:
+        copy.__qualname__ = f"{function.__name__}_{_DIGEST}"
     made = (
         njit(signature, cache=True, nogil=True, no_cfunc_wrapper=True)
         if signature
@@ -68,7 +79,9 @@ for _inner in (kernels._before, kernels._push, kernels._pop):
     _compile(_inner)
 
 for _inner in (
-    landmark_cuts._put, landmark_cuts._dearest, landmark_cuts._explore, landmark_cuts._fill_zone,
+    landmark_queue.put, landmark_queue.put_far, landmark_queue.take_far,
+    landmark_queue.bucket_of_nearest, landmark_queue.are_few,
+    landmark_cuts._dearest, landmark_cuts._explore, landmark_cuts._fill_zone,
     landmark_cuts._find_cut, landmark_cuts._make_cheaper,
 ):  # fmt: skip
     _compile(_inner)

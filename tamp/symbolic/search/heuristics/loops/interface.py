@@ -4,8 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, csr_rows
+
+FOLDER = Path(__file__).resolve().parent
+SOURCES = ("rows", "kernels", "landmark_queue", "landmark_cuts")
+KEPT = ("explore", "relaxed_plan", "landmark_cut", "transposed", "appended", "incremented")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,6 @@
 """The inner loops of the heuristics, in Python that numba can compile; see `selection`.
 
-All in one file, since numba's cache watches one file only. Operators and facts are those of
-`heuristics.relaxation`. Compiled, all lists are arrays.
+Operators and facts are those of `heuristics.relaxation`. Compiled, all lists are arrays.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """The inner loop of the landmark-cut heuristic, in Python that numba can compile; see `selection`.
 
-All in one file, since numba's cache watches one file only. Operators and facts are those of
-`heuristics.lmcut`: the last operator has the goals as preconditions and the goal fact as effect.
-Compiled, all lists are arrays.
+Operators and facts are those of `heuristics.lmcut`: the last operator has the goals as
+preconditions and the goal fact as effect. Compiled, all lists are arrays.
 """
 
 from __future__ import annotations
@@ -10,30 +9,17 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from tamp.symbolic.search.heuristics.loops.landmark_queue import (
+    Buckets,
+    are_few,
+    bucket_of_nearest,
+    put,
+    put_far,
+)
 from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, full
 
 ZERO = 1e-9
 """Costs below are nothing: what rounding leaves of a cost that cuts have used up."""
-
-
-class Buckets(NamedTuple):
-    """A priority queue of facts for few distinct costs: buckets linked in the order of cost.
-
-    Attributes:
-        costs: Of the facts in each bucket.
-        tops: The entry on top of each bucket, -1 where it is empty.
-        later: The bucket after each, -1 at the end.
-        facts: Of each entry.
-        below: The entry below each in its bucket, -1 at the bottom.
-        sizes: How many buckets and how many entries there are.
-    """
-
-    costs: list[float]
-    tops: list[int]
-    later: list[int]
-    facts: list[int]
-    below: list[int]
-    sizes: list[int]
 
 
 class CheaperThanGoal(NamedTuple):
@@ -53,24 +39,6 @@ class CheaperThanGoal(NamedTuple):
     settled: list[int]
 
 
-def _put(fact: int, cost: float, first: int, queue: Buckets) -> None:
-    """Put a fact into the bucket of its cost, from bucket `first` on, whose cost is not more."""
-    bucket, last, sizes = first, first, queue.sizes
-    while bucket >= 0 and queue.costs[bucket] < cost:
-        last, bucket = bucket, queue.later[bucket]
-    if bucket < 0 or queue.costs[bucket] != cost:
-        new = sizes[0]
-        sizes[0] += 1
-        queue.costs[new], queue.tops[new], queue.later[new] = cost, -1, bucket
-        queue.later[last] = new
-        bucket = new
-
-    entry = sizes[1]
-    sizes[1] += 1
-    queue.facts[entry], queue.below[entry] = fact, queue.tops[bucket]
-    queue.tops[bucket] = entry
-
-
 def _dearest(goals: Integers, reached: Reals) -> float:
     most = 0.0
     for goal in goals:
@@ -80,7 +48,7 @@ def _dearest(goals: Integers, reached: Reals) -> float:
 
 def _explore(
     before: CsrRows, effects: CsrRows, needs: CsrRows, costs: Reals, here: Integers,
-    goals: Integers, queue: Buckets, found: CheaperThanGoal,
+    goals: Integers, few: bool, queue: Buckets, found: CheaperThanGoal,
 ) -> tuple[float, int]:  # fmt: skip
     """Compute hmax from the facts that hold, up to the goal's cost; return that, and how many
     operators are fired for less.
@@ -91,16 +59,16 @@ def _explore(
     for fact in range(len(reached)):
         reached[fact] = math.inf
     queue.costs[0], queue.tops[0], queue.later[0] = 0.0, -1, -1
-    queue.sizes[0], queue.sizes[1] = 1, 0
+    queue.sizes[0], queue.sizes[1], queue.sizes[2] = 1, 0, 0
     for fact in here:
         reached[fact] = 0.0
-        _put(fact, 0.0, 0, queue)
+        put(fact, 0.0, 0, queue)
 
     bucket = count = many = earlier = cheaper = 0
     while bucket >= 0:
         cost, entry = queue.costs[bucket], queue.tops[bucket]
         if entry < 0:  # all facts of this cost are settled: can the goal cost more than the next?
-            bucket = queue.later[bucket]
+            bucket = queue.later[bucket] if few else bucket_of_nearest(queue)
             if bucket < 0 or _dearest(goals, reached) <= queue.costs[bucket]:
                 break
             earlier, cheaper = count, many
@@ -119,9 +87,13 @@ def _explore(
             fired[many] = i
             many += 1
             for k in range(effects.starts[i], effects.starts[i + 1]):
-                if cost + costs[i] < reached[effects.values[k]]:
-                    reached[effects.values[k]] = cost + costs[i]
-                    _put(effects.values[k], cost + costs[i], bucket, queue)
+                effect, dear = effects.values[k], cost + costs[i]
+                if dear < reached[effect]:
+                    reached[effect] = dear
+                    if few or dear == cost:
+                        put(effect, dear, bucket, queue)
+                    else:
+                        put_far(effect, dear, queue.far_costs, queue.far_facts, queue.sizes)
 
     least = _dearest(goals, reached)
     if count and least < math.inf and least <= reached[settled[count - 1]]:
@@ -246,7 +218,14 @@ def landmark_cut(
         costs[i] = prices[i]
     room = facts + len(effects.values)
     queue = Buckets(
-        full(room, 0.0), full(room, 0), full(room, 0), full(room, 0), full(room, 0), full(2, 0)
+        full(room, 0.0),
+        full(room, 0),
+        full(room, 0),
+        full(room, 0),
+        full(room, 0),
+        full(room, 0.0),
+        full(room, 0),
+        full(3, 0),
     )
     found = CheaperThanGoal(
         full(facts, math.inf), full(operators, 0), full(operators, 0), full(facts, 0)
@@ -254,9 +233,9 @@ def landmark_cut(
     zone, seen = full(facts, False), full(facts, False)
     listed, stack, cut = full(facts, 0), full(facts, 0), full(operators, 0)
     goals = before.values[before.starts[operators - 1] : before.starts[operators]]
-    total, turn = 0.0, 0
+    total, turn, few = 0.0, 0, are_few(prices)
 
-    least, many = _explore(before, effects, needs, costs, here, goals, queue, found)
+    least, many = _explore(before, effects, needs, costs, here, goals, few, queue, found)
     while ZERO < least < math.inf:
         size = _fill_zone(before, adders, costs, goal, found.reached, zone, listed)
         count = _find_cut(effects, needs, least, many, found, zone, seen, stack, cut)
@@ -265,5 +244,5 @@ def landmark_cut(
 
         total += _make_cheaper(costs, cut, count, owners, groups, turn, marks)
         turn += 1
-        least, many = _explore(before, effects, needs, costs, here, goals, queue, found)
+        least, many = _explore(before, effects, needs, costs, here, goals, few, queue, found)
     return total if least < math.inf else math.inf

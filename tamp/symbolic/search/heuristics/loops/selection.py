@@ -7,12 +7,9 @@ same numbers.
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
-from tamp.symbolic.search.compilation_threshold import CompilationThreshold
+from tamp.symbolic.search.compilation_threshold import CompilationThreshold, are_kept
 from tamp.symbolic.search.heuristics.loops import kernels, landmark_cuts, rows
-from tamp.symbolic.search.heuristics.loops.interface import Kernels
+from tamp.symbolic.search.heuristics.loops.interface import FOLDER, KEPT, SOURCES, Kernels
 
 LOAD_THRESHOLD = 2_000_000
 """Entries that plain Python goes through before the compiled loops are loaded: about as long as
@@ -23,14 +20,6 @@ COMPILE_THRESHOLD = 2_000_000
 """Entries before they are compiled, where that has not been done yet: half a second, a fifth of
 what that takes once, while every later run of such a task is the quicker for it.
 """
-
-CACHED = (
-    (kernels, ("explore", "relaxed_plan")),
-    (landmark_cuts, ("landmark_cut",)),
-    (rows, ("transposed", "appended", "incremented")),
-)
-"""The functions that numba keeps on disk, by module."""
-
 
 PLAIN = Kernels(
     explore=kernels.explore,
@@ -74,16 +63,8 @@ def prepare() -> None:
 
 
 def compiled_before() -> bool:
-    """Check that numba's cache beside the sources has all kernels, none older than its source."""
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return False
-    for module, names in CACHED:
-        source = Path(str(module.__file__))
-        for name in names:
-            indexes = (source.parent / "__pycache__").glob(f"{source.stem}.{name}-*.nbi")
-            if all(index.stat().st_mtime < source.stat().st_mtime for index in indexes):
-                return False
-    return True
+    """Check that numba's cache beside the sources has all kernels, made of these sources."""
+    return are_kept(FOLDER, SOURCES, KEPT)
 
 
 def choose(entries: int) -> Kernels:

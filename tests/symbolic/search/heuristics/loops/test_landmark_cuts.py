@@ -1,4 +1,4 @@
-"""The inner loop of landmark cuts, step by step: buckets, exploration up to the goal, goal zone, cut."""
+"""The inner loop of landmark cuts, step by step: exploration up to the goal, goal zone, cut."""
 
 from __future__ import annotations
 
@@ -10,41 +10,34 @@ import pytest
 
 from tamp.symbolic.search.heuristics.lmcut import LandmarkCuts
 from tamp.symbolic.search.heuristics.loops.landmark_cuts import (
-    Buckets,
     CheaperThanGoal,
     _explore,
     _fill_zone,
     _find_cut,
-    _put,
 )
 from tamp.symbolic.search.heuristics.loops.rows import csr_rows, transposed
 from tamp.symbolic.search.heuristics.relaxation import Relaxation
 from tamp.symbolic.search.successors import Successors
+from tests.symbolic.search.heuristics.loops.queues import empty
 from tests.symbolic.search.heuristics.test_lmcut import random_relaxed, relaxed_optimum
 
 
-def empty(room: int) -> Buckets:
-    """A queue with one bucket, of cost 0."""
-    return Buckets([0.0] * room, [-1] * room, [-1] * room, [0] * room, [0] * room, [1, 0])
-
-
-def in_order(queue: Buckets) -> list[tuple[float, int]]:
-    """All entries, bucket by bucket, from the top down."""
-    found, bucket = [], 0
-    while bucket >= 0:
-        entry = queue.tops[bucket]
-        while entry >= 0:
-            found.append((queue.costs[bucket], queue.facts[entry]))
-            entry = queue.below[entry]
-        bucket = queue.later[bucket]
-    return found
-
-
-def test_buckets_stand_in_the_order_of_cost_whatever_was_put_first() -> None:
-    queue = empty(10)
-    for fact, cost in [(7, 2.0), (3, 0.5), (4, 2.0), (1, 9.0), (2, 1.0)]:
-        _put(fact, cost, 0, queue)
-    assert in_order(queue) == [(0.5, 3), (1.0, 2), (2.0, 4), (2.0, 7), (9.0, 1)]
+@pytest.mark.parametrize("seed", range(30))
+def test_buckets_and_heap_explore_alike(seed: int) -> None:
+    rng = Random(seed)
+    ways = [
+        (rng.sample(range(12), rng.randint(1, 2)), rng.sample(range(12), 2), float(rng.randint(0, 5)))
+        for _ in range(30)
+    ]  # fmt: skip
+    ways.append((rng.sample(range(12), 2), [12], 0.0))
+    made = [Task(ways, facts=13, few=few) for few in (True, False)]
+    first, other = made
+    assert (first.least, first.many) == (other.least, other.many)
+    assert first.found.waiting == other.found.waiting
+    assert sorted(first.found.fired[: first.many]) == sorted(other.found.fired[: other.many])
+    assert [min(cost, first.least) for cost in first.found.reached] == [
+        min(cost, first.least) for cost in other.found.reached
+    ]
 
 
 # Facts 0 to 5 and the goal fact 6; operators: (before, effects, cost), the last one stands for the goal.
@@ -58,7 +51,9 @@ FREE = [([0], [1], 1.0), ([1], [2], 0.0), ([2], [3], 0.0), ([2], [6], 0.0)]
 class Task:
     """Operators as rows, explored from fact 0."""
 
-    def __init__(self, operators: list[tuple[list[int], list[int], float]], facts: int = 7) -> None:
+    def __init__(
+        self, operators: list[tuple[list[int], list[int], float]], facts: int = 7, few: bool = True
+    ) -> None:
         self.before = csr_rows([before for before, _, _ in operators])
         self.effects = csr_rows([effects for _, effects, _ in operators])
         self.costs = [cost for _, _, cost in operators]
@@ -68,7 +63,7 @@ class Task:
         self.found = CheaperThanGoal([0.0] * facts, [0] * count, [0] * count, [0] * facts)
         room = facts + len(self.effects.values)
         self.least, self.many = _explore(
-            self.before, self.effects, self.needs, self.costs, [0], self.goals, empty(room), self.found
+            self.before, self.effects, self.needs, self.costs, [0], self.goals, few, empty(room), self.found
         )  # fmt: skip
 
     def zone(self) -> list[int]:

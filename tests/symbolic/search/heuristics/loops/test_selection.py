@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
-import time
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -23,27 +20,6 @@ def test_plain_python_is_left_when_it_has_done_enough(monkeypatch: pytest.Monkey
     monkeypatch.undo()
     monkeypatch.setattr(tiers, "THRESHOLD", replace(tiers.THRESHOLD, entries=0, enough=None))
     assert tiers.choose(1) is COMPILED
-
-
-def test_only_what_numba_has_all_of_and_newer_than_its_source_counts_as_compiled(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    (tmp_path / "__pycache__").mkdir()
-    for module, _ in tiers.CACHED:
-        source = tmp_path / Path(str(module.__file__)).name
-        source.write_text("")
-        monkeypatch.setattr(module, "__file__", str(source))
-    for module, names in tiers.CACHED:
-        for name in names:
-            assert not tiers.compiled_before()
-            (
-                tmp_path / "__pycache__" / f"{Path(str(module.__file__)).stem}.{name}-7.py311.nbi"
-            ).write_text("")
-    assert tiers.compiled_before()
-    later = time.time() + 10.0
-    os.utime(tmp_path / "rows.py", (later, later))
-    assert not tiers.compiled_before()
 
 
 def test_what_was_compiled_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
