@@ -4,13 +4,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 
 import pytest
 
 from grounding.collect import collect, read_demonstrations
 from grounding.dataset import write_dataset
+from tamp.simulation.drops import Drops
+from tamp.simulation.engines import open_drops
 from tests.grounding.shown import scene
 from tests.needs import HAS_TORCH
 
@@ -76,3 +78,9 @@ def _skipped_without_torch() -> Generator[None]:
         if HAS_TORCH or error.name != "torch":
             raise
         pytest.skip("it trains, and torch is not installed")
+
+
+@pytest.fixture(scope="module")
+def drops() -> Iterator[Drops]:
+    with open_drops() as opened:
+        yield opened

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,16 +18,9 @@ from grounding.separation import Obstacles, separations
 from grounding.supports import FurnitureSupport
 from tamp.geometric.scene.pose import Array
 from tamp.simulation.drops import Drops
-from tamp.simulation.engines import open_drops
 from tests.grounding.forms import TOP, at, box, on_table
 
 Made = Callable[[str, str], tuple[LabelledScene, BodyGeometry]]
-
-
-@pytest.fixture(scope="module")
-def drops() -> Iterator[Drops]:
-    with open_drops() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -17,19 +17,12 @@ from grounding.scenes import LabelledScene, SampledScene
 from grounding.separation import Obstacles
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.simulation.drops import Drops
-from tamp.simulation.engines import open_drops
 from tests.grounding.forms import box
 
 SCENES = 2
 """Of each kind."""
 
 Made = Callable[[str, str], list[tuple[LabelledScene, BodyGeometry]]]
-
-
-@pytest.fixture(scope="module")
-def drops() -> Iterator[Drops]:
-    with open_drops() as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

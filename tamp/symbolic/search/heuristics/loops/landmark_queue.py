@@ -1,5 +1,7 @@
-"""A priority queue of facts for the landmark-cut heuristic's inner loop, in Python that numba can
-compile; see `selection`. Compiled, all lists are arrays.
+"""A bucket queue (Dial, Shortest-Path Forest with Topological Ordering, 1969) of facts for the
+landmark-cut heuristic's inner loop, with a binary heap where costs are many.
+
+In Python that numba can compile; see `selection`. Compiled, all lists are arrays.
 """
 
 from __future__ import annotations
