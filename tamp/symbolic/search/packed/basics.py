@@ -13,11 +13,12 @@ NODES, GROUPS, MEMBERS, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3,
 PROGRESS = 8
 """Place of the number of states that were expanded when an estimate was a new low."""
 
-UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM = 9, 10, 11, 12, 13
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM, ENDURANCE = 9, 10, 11, 12, 13, 14
 """Places of what is given: expanded states until a pause, at most, turns after progress, whether
-what reaches a landmark is preferred, and the state of the generator that shuffles; 0: none does."""
+what reaches a landmark is preferred, the state of the generator that shuffles (0: none does), and
+expanded states since progress at most."""
 
-SIZES = 14
+SIZES = 15
 """From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
 
 

@@ -15,6 +15,7 @@ from tamp.symbolic.search.packed.basics import (
     AT,
     BOOST,
     DETOUR,
+    ENDURANCE,
     EVALUATED,
     EXPANDED,
     GOAL_ENTRY,
@@ -229,7 +230,8 @@ def run(ints, reals, t, r, x, space, weight, below):
         for k in range(kinds):
             dead = dead or reals[space.values + node * kinds + k] == math.inf
         if not dead:
-            if ints[EXPANDED] >= ints[LIMIT]:
+            expanded = ints[EXPANDED]
+            if expanded >= ints[LIMIT] or expanded - ints[PROGRESS] >= ints[ENDURANCE]:
                 return LIMITED
             place(ints, reals, t, space, node, parent, ints[space.members + member] >> 32)
             expand(ints, reals, t, r, x, space, node, length, weight, below)

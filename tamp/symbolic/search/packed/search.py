@@ -45,11 +45,7 @@ def fits(names: Sequence[str], successors: Successors) -> bool:
 
 def packed_lazy(search: SearchSpace, names: Sequence[str], weight: float) -> Plan | None:
     """Search as `lazy.lazy` does."""
-    patience = UNLIMITED if search.endurance is None else search.endurance
-    try:
-        return PackedSearch(search, names, weight).plan(patience)
-    except Stalled:
-        raise SearchLimitReached(Reason.LIMIT) from None
+    return PackedSearch(search, names, weight).plan()
 
 
 class Stalled(Exception):
@@ -108,9 +104,11 @@ class PackedSearch:
 
     def _begin(self, kinds: int) -> None:
         """Set the counters, and put the initial state into the usual list of each heuristic."""
-        space, ints, reals, limit = self._space, self._ints, self._reals, self._search.limit
+        space, ints, reals = self._space, self._ints, self._reals
+        limit, endurance = self._search.limit, self._search.endurance
         ints[basics.GOAL_NODE], ints[basics.BOOST] = -1, PREFERRED_BOOST
         ints[basics.LIMIT] = UNLIMITED if limit is None else limit
+        ints[basics.ENDURANCE] = UNLIMITED if endurance is None else endurance
         reals[:kinds] = math.inf
 
         ints[space.members], reals[space.member_cost] = -1 - basics.GOAL_ENTRY, 0.0

@@ -21,7 +21,7 @@ def begun(made: Packed) -> Packed:
     """With the initial state in the first list, as `PackedSearch` begins."""
     ints, space = made.ints, made.space
     ints[basics.GOAL_NODE], ints[basics.BOOST] = -1, 1000
-    ints[basics.LIMIT] = ints[basics.UNTIL] = NO_LIMIT
+    ints[basics.LIMIT] = ints[basics.UNTIL] = ints[basics.ENDURANCE] = NO_LIMIT
     made.reals[: made.t.heuristics] = math.inf
     ints[space.members], made.reals[space.member_cost] = -1 - basics.GOAL_ENTRY, 0.0
     ints[basics.MEMBERS], ints[basics.GROUPS] = 1, made.t.heuristics

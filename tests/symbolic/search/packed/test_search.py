@@ -81,6 +81,21 @@ def test_random_tasks_with_random_prices(block: int, monkeypatch: pytest.MonkeyP
     assert plans >= 10
 
 
+@pytest.mark.parametrize("seed", [83, 87, 98, 136, 204, 222, 247, 259, 318, 378])
+def test_a_search_without_progress_may_come_to_the_goal_before_it_expands_another_state(
+    seed: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is given up where it would expand one more: what is in its lists may be a goal."""
+    rng = Random(seed)
+    instantiated = instantiate(random_task(rng))
+    endurance, heuristic = rng.choice((1, 2, 3, 4, 6)), WAYS[seed % len(WAYS)][1]
+    found = compare(
+        monkeypatch, instantiated, {}, search="wastar", heuristic=heuristic, weight=1.0,
+        endurance=endurance,
+    )  # fmt: skip
+    assert found.expanded
+
+
 @pytest.mark.parametrize("seed", range(12))
 @pytest.mark.parametrize("name", ["greedy", "wastar"])
 def test_guards_of_all_kinds(seed: int, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
