@@ -23,13 +23,34 @@ def _unseen(value: Any, why: Rejection | str) -> None:
     pass
 
 
+class LateGenerator:
+    """A random generator that is seeded when it is first asked for: most tests draw nothing.
+
+    Args:
+        make: What makes it.
+    """
+
+    __slots__ = ("_made", "_make")
+
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._make: Callable[[], Any] | None = make
+        self._made: Any = None
+
+    @property
+    def generator(self) -> Any:
+        """Return it, the same one each time."""
+        if self._make is not None:
+            self._made, self._make = self._make(), None
+        return self._made
+
+
 @dataclass(frozen=True, slots=True)
 class Call:
     """The circumstances of one stream call: what a stream's function is given beside its inputs.
 
     Attributes:
-        rng: A numpy.random.Generator of this stream instance's own, seeded by the run's seed and
-            the instance.
+        source: A numpy.random.Generator of this stream instance's own, seeded by the run's seed and
+            the instance, or what makes it; functions take `rng`.
         deadline: When the run ends; long computations give up before.
         fluents: The state's facts of the predicates that the stream names in `:fluents`, with
             values in the place of objects: ("at-pose", "mug", Pose(...)).
@@ -42,13 +63,19 @@ class Call:
             Rejection, or a few words; for recordings.
     """
 
-    rng: Any
+    source: Any
     deadline: Deadline
     fluents: Sequence[tuple[Any, ...]] = ()
     memory: dict[str, Any] = field(default_factory=dict[str, Any])
     ahead: bool = False
     warn: Callable[[str], None] = _unheard
     refused: Callable[[Any, Rejection | str], None] = _unseen
+
+    @property
+    def rng(self) -> Any:
+        """Return the numpy.random.Generator of this stream instance's own."""
+        source = self.source
+        return source.generator if isinstance(source, LateGenerator) else source
 
 
 class StreamKind(Enum):

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pickle
 from collections import Counter
+from dataclasses import replace
 
 import tamp
 from tamp import Rejection, RejectionKind
+from tamp.stream import Call, LateGenerator
+from tamp.system.deadline import Deadline
 
 
 def test_blockers_without_a_kind_are_in_the_way() -> None:
@@ -43,3 +46,17 @@ def test_equal_causes_are_counted_together_and_cross_processes() -> None:
     assert Counter([said, Rejection.hits("can", blockers=("can",))]) == {said: 2}
     assert pickle.loads(pickle.dumps(said)) == said
     assert tamp.RejectionKind is RejectionKind
+
+
+def test_a_generator_is_made_when_it_is_asked_for_and_once() -> None:
+    made: list[object] = []
+
+    def make() -> object:
+        made.append(object())
+        return made[-1]
+
+    late = Call(LateGenerator(make), Deadline())
+    other = replace(late, ahead=True)
+    assert not made
+    assert late.rng is other.rng is late.rng is made[0] and len(made) == 1
+    assert Call("any", Deadline()).rng == "any"

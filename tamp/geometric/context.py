@@ -15,6 +15,7 @@ import numpy as np
 from tamp.geometric.collision.arrangement import Arrangement
 from tamp.geometric.collision.collisions import Attachment, Collisions
 from tamp.geometric.collision.hand_collisions import HandCollisions
+from tamp.geometric.collision.swept_boxes import SweptBoxes
 from tamp.geometric.collision.touching import Touching
 from tamp.geometric.motion.passage import Passage
 from tamp.geometric.motion.planners import COMPILED
@@ -30,7 +31,7 @@ from tamp.geometric.scene.bounds import bounds
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.scene.scene import Part, Scene
 from tamp.geometric.stability.stable_poses import StableFaces, stable_faces_of
-from tamp.geometric.values import Grasp, Load, Stance
+from tamp.geometric.values import BaseConf, Grasp, Load, Reach, Stance
 
 if TYPE_CHECKING:
     from jaxtyping import Float
@@ -55,6 +56,8 @@ class Context:
         solver: Inverse kinematics of the arm, where another context has it.
         footings: Of bodies at poses on movable ones, the convex polygons (n, 2) over all of which
             whatever stands on them must have its centre of mass, metres.
+        swept_by_hand, swept_by_reach: Broad phases of the tests of one grasp, and of one reach,
+            against one other body at a time.
     """
 
     scene: Scene
@@ -69,6 +72,12 @@ class Context:
     )
     footings: dict[tuple[str, Pose], tuple[Array, ...]] = field(
         default_factory=dict[tuple[str, Pose], "tuple[Array, ...]"],
+    )
+    swept_by_hand: dict[tuple[Pose, Grasp], SweptBoxes] = field(
+        default_factory=dict[tuple[Pose, Grasp], "SweptBoxes"],
+    )
+    swept_by_reach: dict[tuple[Grasp, BaseConf, Reach], SweptBoxes] = field(
+        default_factory=dict[tuple[Grasp, "BaseConf", "Reach"], "SweptBoxes"],
     )
     _loaded: dict[tuple[str, Load], Context] = field(
         default_factory=dict[tuple[str, Load], "Context"],

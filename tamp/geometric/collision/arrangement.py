@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -148,23 +149,31 @@ class Arrangement:
         for start, end in pairwise(path):
             if check_edge(start, end, max(2 * padding, _TIGHT_PADDING_M), self.packed) & 3 == FREE:
                 continue
-            count = max(1, math.ceil(self._motion(start, end) / step))
+            count = max(1, math.ceil(self.motion_bound(start[None], end[None])[0] / step))
             for k in range(count + 1):
                 names = self.hits(start + (end - start) * (k / count), padding)
                 if names is not None:
                     return names
         return None
 
-    def _motion(self, start: Array, end: Array) -> float:
-        """Bound how far any point of the robot moves between two configurations, metres."""
-        change, tables = np.abs(end - start), self.tables
+    def motion_bound(
+        self, start: Float[Array, "n conf"], end: Float[Array, "n conf"]
+    ) -> Float[Array, " n"]:
+        """Bound how far any point of the robot moves between configurations, (n,), metres."""
+        change = np.abs(end - start)
+        return np.hypot(change[:, 0], change[:, 1]) + change[:, 2:] @ self._levers
+
+    @cached_property
+    def _levers(self) -> Array:
+        """Bound how far a turn of the yaw, then of each joint, moves any point, (1 + n,), metres a
+        radian.
+        """
+        tables = self.tables
         parts = tables.parts[tables.parts[:, FRAME] > 0]
         offsets = np.linalg.norm(tables.part_poses[tables.parts[:, FRAME] > 0, 9:], axis=1)
         tip = offsets + np.linalg.norm(parts[:, CENTRE : CENTRE + 3], axis=1) + parts[:, RADIUS]
         lengths = np.linalg.norm(tables.joints[:, 9:], axis=1)
-        # Of the yaw, then of each joint.
-        levers = np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
-        return float(math.hypot(change[0], change[1]) + change[2:] @ levers)
+        return np.append(np.cumsum(lengths[::-1])[::-1], 0.0) + tip.max()
 
     def _scan(self, conf: Array, padding: float) -> tuple[str, str] | None:
         """Check all pairs by FCL."""

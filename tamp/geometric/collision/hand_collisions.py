@@ -12,6 +12,7 @@ import numpy as np
 
 from tamp.geometric.collision.collisions import Attachment
 from tamp.geometric.collision.fcl_bodies import FclBody, touch
+from tamp.geometric.collision.swept_boxes import SweptBoxes, swept_balls
 from tamp.geometric.robot.robot import Robot
 from tamp.geometric.robot.urdf import Joint
 from tamp.geometric.scene.bounds import bounds
@@ -100,6 +101,15 @@ class HandCollisions:
                 return name
 
         return None
+
+    def swept(
+        self, tools: Float[Array, "m 4 4"], openings: Sequence[float], attachment: Attachment
+    ) -> SweptBoxes:
+        """Box all that the hand, at any of the openings, and the body in it touch at the poses
+        T_world_tool (m, 4, 4).
+        """
+        movers = [*(self._movers(opening) for opening in openings), self._holding(attachment)]
+        return SweptBoxes.union(swept_balls(tools, group.centres, group.radii) for group in movers)
 
     def meets(
         self, opening: float, T_body_tool: Float[Array, "4 4"], other: HandCollisions,

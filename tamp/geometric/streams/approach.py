@@ -5,10 +5,13 @@ of arm or base.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tamp.geometric.collision.swept_boxes import SweptBoxes
+from tamp.geometric.collision.touching import TOUCHING_GAP_M
 from tamp.geometric.context import Context
 from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.values import Grasp
@@ -56,9 +59,25 @@ def test_approach_clear(
     """Test whether another body leaves the hand its way to a grasp: false only when the hand hits
     it.
     """
-    if body == other or approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
+    if body == other or not _swept(context, pose, grasp).meet(
+        *context.box(other, other_pose), TOUCHING_GAP_M
+    ):
+        return True
+    if approach_hits(context, pose, grasp, [(other, other_pose)]) is None:
         return True
     return Rejection.hits(other, blockers=(other,))
+
+
+def _swept(context: Context, pose: Pose, grasp: Grasp) -> SweptBoxes:
+    """Box the hand and the body in it on their way to a grasp and back, in the broad phase."""
+    boxes = context.swept_by_hand.get((pose, grasp))
+    if boxes is None:
+        way = _way(context, pose, grasp)
+        tools = np.array([*way.out, *_drawn_back(way.T_world_tool)])
+        openings = context.robot.opening, grasp.opening
+        boxes = context.hand.swept(tools, openings, context.attachment(grasp))
+        context.swept_by_hand[pose, grasp] = boxes
+    return boxes
 
 
 def _flat(context: Context, body: str, pose: Pose, hit: str) -> str:
@@ -81,10 +100,8 @@ def approach_hits(
     back with the body.
     """
     around = list(others)
-    T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
-    back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
-    up = context.touching.way_out(grasp.body, pose, LIFT_DISTANCE_M)
-    out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in APPROACH_SHARES)]
+    way = _way(context, pose, grasp)
+    T_world_tool, up, back, out = way.T_world_tool, way.up, way.back, way.out
     hand, touching = context.hand, context.touching
     hit = open_hand_hits(context, T_world_tool, around)
     if hit is not None:
@@ -109,13 +126,40 @@ def approach_hits(
     return hit or hand.hits(out, grasp.opening, context.attachment(grasp), around)
 
 
+@dataclass(frozen=True, eq=False)
+class _Way:
+    """The tool's way from a grasp.
+
+    Attributes:
+        T_world_tool: The grasp, (4, 4).
+        up, back: How it is lifted off, and drawn back along its axis, (3,) each, metres.
+        out: Where the hand with the body in it is looked at, (4, 4) each.
+    """
+
+    T_world_tool: Array
+    up: Array
+    back: Array
+    out: list[Array]
+
+
+def _way(context: Context, pose: Pose, grasp: Grasp) -> _Way:
+    T_world_tool = pose.matrix @ grasp.T_tool_body.inverse().matrix
+    back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
+    up = context.touching.way_out(grasp.body, pose, LIFT_DISTANCE_M)
+    out = [T_world_tool, *(_moved(T_world_tool, up + share * back) for share in APPROACH_SHARES)]
+    return _Way(T_world_tool, up, back, out)
+
+
 def open_hand_hits(
     context: Context, T_world_tool: Float[Array, "4 4"], others: Iterable[tuple[str, Pose]]
 ) -> str | None:
     """Return the first of other bodies that the open hand hits on its way to a tool pose (4, 4)."""
+    return context.hand.hits(_drawn_back(T_world_tool), context.robot.opening, None, others)
+
+
+def _drawn_back(T_world_tool: Array) -> list[Array]:
     back = -RETREAT_DISTANCE_M * T_world_tool[:3, 2]
-    away = [_moved(T_world_tool, share * back) for share in APPROACH_SHARES]
-    return context.hand.hits(away, context.robot.opening, None, others)
+    return [_moved(T_world_tool, share * back) for share in APPROACH_SHARES]
 
 
 def _moved(matrix: Array, offset: Array) -> Array:

@@ -8,8 +8,10 @@ import math
 
 import numpy as np
 
+from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M
+from tamp.geometric.collision.swept_boxes import SweptBoxes, swept_by_robot
 from tamp.geometric.context import Context
-from tamp.geometric.scene.pose import Pose
+from tamp.geometric.scene.pose import Array, Pose
 from tamp.geometric.streams.departure import lift_hits
 from tamp.geometric.streams.reach import arm_length
 from tamp.geometric.values import BaseConf, Grasp, Reach
@@ -64,15 +66,16 @@ def test_reach_clear(
         return True
     if _out_of_the_way(context, body, base, other, other_pose):
         return True
+    if not _swept(context, grasp, base, reach).meet(
+        *context.box(other, other_pose), TRANSIT_CLEARANCE_M
+    ):
+        return True
 
     home = context.conf(base.array, context.home)
     place = {other: other_pose}
     empty = context.collisions.arrangement(place, None, fixed=False)
     loaded = context.collisions.arrangement(place, context.attachment(grasp), fixed=False)
-    approach, lift = (
-        np.array([context.conf(base.array, q) for q in path])
-        for path in (reach.approach, reach.lift)
-    )
+    approach, lift = _paths(base, reach)
     if not (empty.free(home) and loaded.free(home)):
         return Rejection.hits(other, who="base", blockers=(other,))
 
@@ -88,6 +91,32 @@ def test_reach_clear(
     if not (empty.free(out) and loaded.free(out)):
         return Rejection.hits(other, blockers=(other,))
     return True
+
+
+def _paths(base: BaseConf, reach: Reach) -> tuple[Array, Array]:
+    """Return approach and lift as configurations (k, 3 + n), (m, 3 + n)."""
+    approach, lift = (
+        np.hstack([np.broadcast_to(base.array, (len(path), 3)), path])
+        for path in (reach.approach, reach.lift)
+    )
+    return approach, lift
+
+
+def _swept(context: Context, grasp: Grasp, base: BaseConf, reach: Reach) -> SweptBoxes:
+    """Box the robot while it stands there at home and reaches, in the broad phase: all that
+    `test_reach_clear` looks at.
+    """
+    key = grasp, base, reach
+    boxes = context.swept_by_reach.get(key)
+    if boxes is None:
+        home = context.conf(base.array, context.home)[None]
+        approach, lift = _paths(base, reach)
+        aside = np.array([approach[0], lift[-1]])
+        empty = context.collisions.arrangement({}, None, fixed=False)
+        loaded = context.collisions.arrangement({}, context.attachment(grasp), fixed=False)
+        boxes = swept_by_robot([empty, loaded], [home, approach, lift, aside])
+        context.swept_by_reach[key] = boxes
+    return boxes
 
 
 def _out_of_the_way(

@@ -9,7 +9,7 @@ from functools import partial
 from numbers import Real
 from typing import Any
 
-from tamp.stream import Call, Rejection, StreamKind, Wild
+from tamp.stream import Call, LateGenerator, Rejection, StreamKind, Wild
 from tamp.symbolic.algorithms.experience.stream_statistics import StreamStatistics
 from tamp.symbolic.pddl.structs import Atom, Fact, Stream
 from tamp.system.deadline import Deadline, OutOfTime
@@ -242,13 +242,13 @@ class Streams:
     def _advance(self, instance: Instance) -> Any:
         values = self.objects.values
         if instance.iterator is None:
-            key = repr((instance.stream.name, instance.inputs, sorted(instance.fluents)))
-            shown = [
-                tuple(values.get(word, word) for word in fact) for fact in sorted(instance.fluents)
-            ]
-            # not a method: a call that knows the streams would keep them alive
+            facts = sorted(instance.fluents)
+            shown = [tuple([values.get(word, word) for word in fact]) for fact in facts]
+            # not methods: a call that knows the streams would keep them alive
+            name, inputs, make_rng = instance.stream.name, instance.inputs, self._make_rng
+            late = LateGenerator(lambda: make_rng(repr((name, inputs, facts))))
             warn = partial(_add_new, self.warnings)
-            call = Call(self._make_rng(key), self._deadline, shown, self.memory, self.ahead, warn)
+            call = Call(late, self._deadline, shown, self.memory, self.ahead, warn)
             made = instance.stream.function(*(values[name] for name in instance.inputs), call=call)
             if instance.stream.is_test:
                 instance.exhausted = True

@@ -113,3 +113,23 @@ def test_two_hands_meet_where_their_parts_do(tmp_path: Path, rng: np.random.Gene
         apart += not said
     assert met > 20 and apart > 20
     assert not hand.meets(0.08, np.eye(4), other, 0.08, Pose((1.0, 0.0, 0.0)).matrix)
+
+
+def test_what_the_hand_hits_is_in_the_boxes_that_it_sweeps(
+    tmp_path: Path, rng: np.random.Generator
+) -> None:
+    context = problem_with("mug", tmp_path).context
+    attachment = Attachment("mug", Pose((0.0, 0.0, 0.05)), 0.04)
+    hits = clear = 0
+    for _ in range(300):
+        start = Pose.from_xyz_rpy((0.0, 0.0, 1.0), tuple(rng.uniform(-3, 3, 3))).matrix
+        tools = np.array([start, Pose(tuple(rng.uniform(-0.1, 0.1, 3))).matrix @ start])
+        there = Pose((*rng.uniform(-0.5, 0.5, 2), float(rng.uniform(0.4, 1.6))))
+        swept = context.hand.swept(tools, (0.02, context.robot.opening), attachment)
+        near = swept.meet(*context.box("lamp", there), 0.0)
+        hit = context.hand.hits(
+            list(tools), context.robot.opening, attachment, [("lamp", there)]
+        ) or context.hand.hits(list(tools), 0.02, None, [("lamp", there)])
+        assert near or hit is None
+        hits, clear = hits + (hit is not None), clear + (not near)
+    assert hits > 20 and clear > 60

@@ -102,3 +102,18 @@ def test_a_wider_opening_needs_more_room(problem: Problem) -> None:
         )
         == "lamp"
     )
+
+
+def test_the_broad_phase_leaves_no_body_out_that_the_hand_hits(
+    problem: Problem, rng: np.random.Generator
+) -> None:
+    """Asked about each place alone, with the broad phase and without."""
+    context, pose, grasp = problem.context, start(problem), from_above()
+    hits = 0
+    for _ in range(600):
+        there = shifted(pose, *(float(value) for value in rng.uniform(-0.25, 0.35, 3)))
+        said = approach.test_approach_clear(context, "box", pose, grasp, "lamp", there, call())
+        hit = approach_hits(context, pose, grasp, [("lamp", there)])
+        assert (said is True) == (hit is None)
+        hits += hit is not None
+    assert 30 < hits < 500

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from tamp.geometric.collision.arrangement import TRANSIT_CLEARANCE_M
+from tamp.geometric.collision.swept_boxes import SweptBoxes
 from tamp.geometric.context import Context
 from tamp.geometric.loading.robots import ROBOTS
 from tamp.geometric.scene.pose import Array, Pose
@@ -156,3 +157,16 @@ def test_what_the_stretched_arm_does_not_get_to_is_not_looked_at(
         base = BaseConf(1.0, -1.0, 0.3)
         assert asked(context, reach(context), Pose((1.0 + distance, -1.0, 0.2)), base) is True
         assert len(looked) >= count and bool(looked) is bool(count)
+
+
+def test_the_broad_phase_leaves_no_body_out_that_is_in_the_way(
+    context: Context, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Asked about each place alone, with the broad phase and without."""
+    ways = [reach(context), reach(context, 0.5, back=0.5), reach(context, -0.6, back=-0.2)]
+    posts = [Pose((*rng.uniform(-0.9, 0.9, 2), float(rng.uniform(0.2, 1.6)))) for _ in range(200)]
+    said = [asked(context, way, post) for way in ways for post in posts]
+    everything = SweptBoxes(np.full((1, 3), -np.inf), np.full((1, 3), np.inf))
+    monkeypatch.setattr(collisions, "_swept", lambda *_: everything)
+    assert [asked(context, way, post) for way in ways for post in posts] == said
+    assert 30 < sum(one is not True for one in said) < 500
