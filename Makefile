@@ -9,6 +9,9 @@ BIN    := $(VENV)/bin
 # Wheels only: a package without one is an error at once, not a compiler's message after minutes.
 PIP    := $(BIN)/python -m pip --disable-pip-version-check install -qq --only-binary :all: -c constraints.txt
 
+# Bytecode beside our own modules, as pip writes it for packages: some machines write none while they run.
+COMPILE := @$(BIN)/python -m compileall -q tamp grounding
+
 .DEFAULT_GOAL := help
 .PHONY: help solve test check format bench
 
@@ -52,9 +55,11 @@ $(BIN)/python:
 $(VENV)/.installed: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "installing tamp into $(VENV) (about a minute)"
 	$(PIP) -e .
+	$(COMPILE)
 	@touch $@
 
 $(VENV)/.developing: pyproject.toml constraints.txt | $(BIN)/python
 	@echo "installing tamp and its developers' tools into $(VENV) (about a minute)"
 	$(PIP) -e .[dev]
+	$(COMPILE)
 	@touch $@ $(VENV)/.installed

@@ -30,7 +30,6 @@ from tamp.symbolic.algorithms.result import StreamTask
 from tamp.symbolic.pddl.lint import lint
 from tamp.symbolic.pddl.relations import Relation
 from tamp.symbolic.pddl.structs import Task
-from tamp.symbolic.search.heuristics.loops.selection import load_kept as load_compiled_loops
 
 
 @dataclass(frozen=True)
@@ -114,7 +113,6 @@ def load_problem(
         raise InputError(f"unknown steering '{steering}'", found=steering, choices=STEERINGS)
     if planner not in PLANNERS:
         raise InputError(f"unknown planner '{planner}'", found=planner, choices=PLANNERS)
-    load_compiled_loops()  # numba is loaded anyway
 
     files = read_files(problem, domain, streams, scene, None if robot is None else str(robot))
     start, goal = parse_task(files, holding)

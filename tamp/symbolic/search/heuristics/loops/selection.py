@@ -16,6 +16,9 @@ LOAD_THRESHOLD = 2_000_000
 loading takes.
 """
 
+LOAD_BESIDE_NUMBA_THRESHOLD = 100_000
+"""The same where numba has been imported already, as for any scene: loading takes 40 ms then."""
+
 COMPILE_THRESHOLD = 2_000_000
 """Entries before they are compiled, where that has not been done yet: half a second, a fifth of
 what that takes once, while every later run of such a task is the quicker for it.
@@ -35,7 +38,10 @@ PLAIN = Kernels(
 
 
 THRESHOLD = CompilationThreshold(
-    "tamp.symbolic.search.heuristics.loops.compiled", LOAD_THRESHOLD, COMPILE_THRESHOLD
+    "tamp.symbolic.search.heuristics.loops.compiled",
+    LOAD_THRESHOLD,
+    COMPILE_THRESHOLD,
+    LOAD_BESIDE_NUMBA_THRESHOLD,
 )
 
 
