@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import mean
 from typing import Any, Literal
@@ -21,76 +21,18 @@ import tyro
 
 from benchmarks.common import RESULTS, table
 from benchmarks.groundings.journal import Journal
+from benchmarks.paper_ways import CHOICE, CLASSIFIERS, TURNED, VARIANTS, Variant
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
+from grounding.paper.runtime import CHOICE as TRIES
 from grounding.paper.runtime import PaperModel, choosing
 from grounding.registry import SHIPPED
 from grounding.train import encoder_of
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
 
-SCHEMES = ("discriminator", "both", "classifier")
-"""What teaches a generator: equation 3 of the paper, the sum of both, equation 4."""
-
 PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-pc": 0.77}, "inside": {"mlp-pc": 0.64}}
 """MCA of the best network for each relation (the paper, section V, Q2); "the others similar"."""
-
-
-CLASSIFIERS = ("residual-turn", "middle-code", "attention")
-"""The departures that change classifiers, too."""
-
-CHOICE = "own-choice"
-"""The departure that changes nothing in training."""
-
-
-@dataclass(frozen=True)
-class Variant:
-    """One way to train one of the paper's networks.
-
-    Attributes:
-        model: Network and features.
-        scheme: What teaches the generator.
-        departures: What is done otherwise than in the paper.
-    """
-
-    model: str
-    scheme: str
-    departures: tuple[str, ...] = ()
-
-    @property
-    def name(self) -> str:
-        """Its row's name."""
-        return " + ".join([f"{self.model} {self.scheme}", *self.departures])
-
-
-BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
-CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
-MIDDLE = ("middle-code",)
-MEAN = ("mean-weights",)
-SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
-DEPARTED = [
-    Variant("mlp-bb", "discriminator", ("residual-turn",)),
-    Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
-    Variant("mlp-bb", "discriminator", MEAN),
-    Variant("gnn-bb", "discriminator", MEAN),
-    Variant("gnn-bb", "discriminator", (*MEAN, "own-choice")),
-    Variant("gnn-bb", "discriminator", (*MEAN, "attention")),
-    Variant("gnn-bb", "discriminator", (*MEAN, "attention", "own-choice")),
-    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
-    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights", "own-choice")),
-    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention")),
-    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention", "own-choice")),
-    Variant("gnn-bb", "both", SCALED),
-    Variant("gnn-bb", "both", (*SCALED, "attention")),
-    Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
-    Variant("mlp-pc", "discriminator", MIDDLE),
-    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights")),
-    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
-    Variant("gnn-pc", "discriminator", MIDDLE),
-    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights")),
-    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
-]
-VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
 
 
 @dataclass(frozen=True)
@@ -160,11 +102,16 @@ def main(options: Options) -> None:
     wanted = [
         variant for variant in VARIANTS if not options.variants or {variant.name, variant.model} & set(options.variants)
     ]
-    train_data = read_dataset(options.data / f"{options.relation}_paper_train.npz")
+    sets = {
+        name: read_dataset(options.data / name) for name in {one.set_name(options.relation, "train") for one in wanted}
+    }
     test = read_dataset(options.data / f"{options.relation}_paper_test.npz")
     if options.ray is not None:
-        _train_on_ray(options, wanted, journal, train_data, test)
+        for name, data in sets.items():
+            some = [one for one in wanted if one.set_name(options.relation, "train") == name]
+            _train_on_ray(options, some, journal, data, test)
     for variant in wanted:
+        train_data = sets[variant.set_name(options.relation, "train")]
         for case in journal.missing(_cases(options, variant, train_data, test)):
             weights = _weights(options, variant, case, train_data)
             started = time.process_time()
@@ -172,7 +119,11 @@ def main(options: Options) -> None:
             journal.add(case, **asdict(found), judged_s=time.process_time() - started)
             print(f"{case.variant}, seed {case.seed}: {found.published:.3f}", file=sys.stderr, flush=True)
 
-    lines = [line for variant in wanted for line in journal.found(_cases(options, variant, train_data, test))]
+    lines = [
+        line
+        for variant in wanted
+        for line in journal.found(_cases(options, variant, sets[variant.set_name(options.relation, "train")], test))
+    ]
     if lines:
         table([*_rows(options.relation, lines)], f"{options.relation}, the paper's layout")
 
@@ -191,9 +142,9 @@ def _weights(options: Options, variant: Variant, case: Case, data: Dataset) -> W
     """Read the weights of a case, or train those of all seeds that have none; of proposals that the own classifier
     chooses those of the same variant without.
     """
-    if CHOICE in variant.departures:
-        rest = tuple(name for name in variant.departures if name != CHOICE)
-        return choosing(_weights(options, replace(variant, departures=rest), case, data))
+    if variant != variant.trained:
+        tries = TRIES if CHOICE in variant.departures else 1
+        return choosing(_weights(options, variant.trained, case, data), tries, TURNED in variant.departures)
     paths = [_path(options, variant, case.samples, seed) for seed in range(options.seeds)]
     missing = [seed for seed, path in enumerate(paths) if not path.is_file()]
     if missing:
@@ -230,13 +181,9 @@ def _train_on_ray(options: Options, wanted: Sequence[Variant], journal: Journal,
     """Train what the results and the folder of weights lack on a cluster."""
     from benchmarks.ray_trainings import Files, Training, train_all
 
-    plain = [
-        replace(one, departures=tuple(name for name in one.departures if name != CHOICE))
-        for one in wanted
-        if [*journal.missing(_cases(options, one, data, test))]
-    ]
+    plain = [one.trained for one in wanted if [*journal.missing(_cases(options, one, data, test))]]
     samples = options.samples or len(data)
-    file = options.data / f"{options.relation}_paper_train.npz"
+    file = options.data / wanted[0].set_name(options.relation, "train")
     for clouds in (False, True):
         some = [one for one in dict.fromkeys(plain) if one.model.endswith("pc") == clouds]
         trainings = [

@@ -28,6 +28,9 @@ class Generate:
     layout: str = "household"
     """household: odd and small furniture, many bodies, any face down; or paper: as the paper's
     public code lays its scenes out, which is easier."""
+    edges: bool = False
+    """Of the layout paper: a share of the negatives is close by the limits, beside the surface at
+    its height, grazing another body, poking out of the container. For training; not the paper's."""
     seed: int = 0
     """Of all randomness: the same seed gives the same bytes."""
     out: Path | None = None
@@ -128,7 +131,8 @@ class Train:
     """
     departures: tuple[str, ...] = ()
     """Of the paper's networks: what is done otherwise than there, any of residual-turn,
-    middle-code, mean-weights, scaled-classifier, attention, own-choice."""
+    middle-code, mean-weights, scaled-classifier, attention, own-choice, turned-scenes,
+    scaled-scenes, edge-negatives (with data of generate --edges), turned-proposals."""
     samples: int | None = None
     """Use only so many of the scenes."""
     iterations: int | None = None
@@ -265,7 +269,7 @@ def _check_own(chosen: Generate | Explore | Encoder | Train) -> None:
     )
 
 
-def data_file(relation: str, split: str, layout: str = "household") -> Path:
+def data_file(relation: str, split: str, layout: str = "household", edges: bool = False) -> Path:
     """Return the default path of a relation's data."""
-    name = split if layout == "household" else f"{layout}_{split}"
+    name = "_".join([*([] if layout == "household" else [layout]), *(["edges"] * edges), split])
     return Path("data") / f"{relation}_{name}.npz"

@@ -101,10 +101,16 @@ def run(shown: Progress, arguments: list[str]) -> int:
 def _generate(chosen: Generate, show: ReportProgress) -> None:
     from grounding.generate import Job, generate
 
-    out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout)
+    out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout, chosen.edges)
     check_out(out, DATA, mesh_files(chosen))
     job = Job(
-        chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen), chosen.layout
+        chosen.relation,
+        chosen.split,
+        chosen.count,
+        chosen.seed,
+        _meshes(chosen),
+        chosen.layout,
+        chosen.edges,
     )
     data = generate(
         job,

@@ -20,6 +20,7 @@ from grounding.demonstrations import KINDS, POSITIVE, DemonstrationGenerator
 from grounding.mesh_folder import MeshFolder
 from grounding.objects import SPLITS
 from grounding.paper.demonstrations import PaperDemonstrations
+from grounding.paper.edge_negatives import EDGE_KINDS
 from grounding.paper.scenes import paper_supports
 from grounding.scenes import LabelledScene
 from grounding.supports import FurnitureSupport, household_supports
@@ -41,6 +42,8 @@ class Job:
         seed: Of all randomness.
         folder: Of one's own meshes.
         layout: One of LAYOUTS.
+        edges: Whether a share of the negatives is close by the limits, see EDGE_KINDS; of the
+            layout "paper" only.
     """
 
     relation: str
@@ -49,17 +52,24 @@ class Job:
     seed: int = 0
     folder: MeshFolder | None = None
     layout: str = "household"
+    edges: bool = False
+
+    @property
+    def shares(self) -> Mapping[str, float]:
+        """Return the share of each type of sample."""
+        return (EDGE_KINDS if self.edges else KINDS)[self.relation]
 
     @property
     def kinds(self) -> tuple[str, ...]:
         """Return the relation's types of samples."""
-        return tuple(KINDS[self.relation])
+        return tuple(self.shares)
 
     @property
     def key(self) -> str:
         """Return the key of all but the count."""
         parts = [self.relation, self.split, self.seed, self.folder and self.folder.key]
-        return json.dumps(parts if self.layout == "household" else [*parts, self.layout])
+        parts += [] if self.layout == "household" else [self.layout]
+        return json.dumps(parts + ["edges"] * self.edges)
 
     @property
     def supports(self) -> Mapping[str, FurnitureSupport]:
@@ -71,7 +81,7 @@ class Job:
     def chunk(self, number: int, start: int, size: int) -> list[LabelledScene]:
         """Make the first `size` scenes of chunk `number`."""
         maker = _maker(self.relation, self.split, self.folder, self.layout)
-        kinds = kinds_of(self.relation, start + size)[start:]
+        kinds = kinds_of(self.shares, start + size)[start:]
         rng = np.random.default_rng(
             [self.seed, SPLITS.index(self.split), tuple(KINDS).index(self.relation), number]
         )
@@ -79,7 +89,7 @@ class Job:
 
     def card(self, arrays: dict[str, NDArray[Any]]) -> dict[str, Any]:
         """Return the card's own entries."""
-        return {"layout": self.layout}
+        return {"layout": self.layout} | ({"edges": True} if self.edges else {})
 
 
 def generate(
@@ -92,18 +102,19 @@ def generate(
     """Make a data set of demonstrations and write it, see `make_dataset`.
 
     Raises:
-        InputError: As there, or an unknown layout.
+        InputError: As there, or an unknown layout, or one without negatives at the edges.
     """
     if job.layout not in LAYOUTS:
         raise InputError(f"unknown layout '{job.layout}'", found=job.layout, choices=[*LAYOUTS])
+    if job.edges and job.layout != "paper":
+        raise InputError(f"layout '{job.layout}' has no --edges; only 'paper' has")
     return make_dataset(job, out, workers, progress, ray)
 
 
-def kinds_of(relation: str, count: int) -> list[str]:
+def kinds_of(shares: Mapping[str, float], count: int) -> list[str]:
     """Return the type of each of `count` scenes: their shares hold in every run of 40, positives
     and negatives in turn.
     """
-    shares = KINDS[relation]
     sides = [
         [kind for kind in shares if (kind in POSITIVE) == positive] for positive in (True, False)
     ]

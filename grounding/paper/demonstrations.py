@@ -12,10 +12,10 @@ from numpy.random import Generator as Random
 from grounding.demonstrations import POSITIVE, sticking_out
 from grounding.mesh_folder import MeshFolder
 from grounding.oracles import Verdict, drop_verdicts
+from grounding.paper.edge_negatives import EDGE_NEGATIVES, is_with
 from grounding.paper.oracle import in_place
 from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M, PaperScenes
 from grounding.random_poses import random_rest, random_turn
-from grounding.relation_scene import Placed
 from grounding.scenes import LabelledScene, SampledScene, free, some_hold_in_physics, touchable
 from grounding.separation import separations
 from tamp.geometric.scene.pose import Array
@@ -33,8 +33,16 @@ FALL_M = 0.05
 SETTLING_S = 5.0
 """How long it is given, seconds."""
 
-CROWDED = ("among others", "colliding")
-"""Types with other bodies on or in argument 0; in all others those lie on the floor."""
+CROWDED = ("among others", "colliding", "grazing")
+"""Types with other bodies on or in argument 0; in all others those lie on the floor, but for
+HALF_CROWDED.
+"""
+
+HALF_CROWDED = ("sticking out", "beside", "poking out")
+"""Types of which half are as CROWDED."""
+
+TOUCHING = ("colliding", "grazing")
+"""Types that do not hold by what they touch, not by where they are."""
 
 
 class PaperDemonstrations:
@@ -62,9 +70,9 @@ class PaperDemonstrations:
 
     def _try(self, kind: str, rng: Random) -> LabelledScene | None:
         positive = kind in POSITIVE
-        crowded = kind in CROWDED or (kind == "sticking out" and rng.random() < 0.5)
+        crowded = kind in CROWDED or (kind in HALF_CROWDED and rng.random() < 0.5)
         scene = self._scenes.draw(rng, crowded=crowded)
-        pose = self._positive(scene, rng) if positive else _NEGATIVES[kind](self, scene, rng)
+        pose = self._positive(scene, rng) if positive else self._negative(kind, scene, rng)
         if pose is None:
             return None
 
@@ -72,7 +80,7 @@ class PaperDemonstrations:
         if (verdicts[0] is Verdict.HOLDS) != positive:
             return None
         # the published code labels `inside` by the test that it judges by, contacts left out
-        labelled_so = self._relation == "inside" and kind != "colliding"
+        labelled_so = self._relation == "inside" and kind not in TOUCHING
         if labelled_so and in_place(scene.situation(pose), pose[None])[0] != positive:
             return None
 
@@ -95,6 +103,11 @@ class PaperDemonstrations:
         return some_hold_in_physics(scene, poses, self._drops, self._scenes.items)
 
     # Samples that do not hold
+
+    def _negative(self, kind: str, scene: SampledScene, rng: Random) -> Array | None:
+        if kind in EDGE_NEGATIVES:
+            return EDGE_NEGATIVES[kind](self._scenes, scene, rng)
+        return _NEGATIVES[kind](self, scene, rng)
 
     def _floating(self, scene: SampledScene, rng: Random) -> Array | None:
         pose = random_turn(rng)
@@ -127,7 +140,7 @@ class PaperDemonstrations:
     def _colliding(self, scene: SampledScene, rng: Random) -> Array | None:
         """Put the body where another one is, moved by up to that one's mean half size."""
         poses = self._scenes.resting(scene, rng)
-        with_it = [item for item in scene.placed[1:] if _over(scene, item)]
+        with_it = [item for item in scene.placed[1:] if is_with(scene, item)]
         if not len(poses) or not with_it:
             return None
 
@@ -139,12 +152,6 @@ class PaperDemonstrations:
 
     def _sticking(self, scene: SampledScene, rng: Random) -> Array | None:
         return sticking_out(scene, rng)
-
-
-def _over(scene: SampledScene, item: Placed) -> bool:
-    """Check whether a body is on or in argument 0, not on the floor."""
-    local = np.linalg.inv(scene.T_world_region) @ item.matrix[:, 3]
-    return bool((np.abs(local[:2]) <= scene.support.region.size[:2] / 2).all() and local[2] > 0.0)
 
 
 _NEGATIVES: Mapping[str, Callable[[PaperDemonstrations, SampledScene, Random], Array | None]] = {

@@ -92,7 +92,7 @@ class BoxFeatures:
     size = BB
 
     def __init__(self, residual: bool = False) -> None:
-        self._residual = residual
+        self.residual = residual
 
     def observe(self, situation: RelationScene, surroundings: bool = True) -> FeatureObservation:
         """See Features."""
@@ -107,16 +107,16 @@ class BoxFeatures:
         low, high = body.form.corners
         middle, half = (low + high) / 2, (high - low) / 2
         start = np.eye(3)
-        if self._residual:
+        if self.residual:
             start = body.matrix[:3, :3]
-            features[1] = _unturned(features[1:2, :3], start[None], half)[0]
+            features[1] = unturned(features[1:2, :3], start[None], half)[0]
         return FeatureObservation(features[:2], features[2:], centres[0], middle, half, start)
 
     def at(self, seen: FeatureObservation, situation: RelationScene, poses: Array) -> Array:
         """See Features."""
         centres = _moved(poses, seen.centre) - seen.origin
-        if self._residual:
-            return _unturned(centres, poses[:, :3, :3], seen.extents)
+        if self.residual:
+            return unturned(centres, poses[:, :3, :3], seen.extents)
         corners = np.broadcast_to(situation.body.form.corners, (len(poses), 2, 3))
         return box_features(centres, quaternions(poses[:, :3, :3]), corners)
 
@@ -220,7 +220,7 @@ def poses_of(seen: FeatureObservation, positions: Array, turns: Array) -> Array:
     return poses
 
 
-def _unturned(centres: Array, turned: Array, half: Array) -> Array:
+def unturned(centres: Array, turned: Array, half: Array) -> Array:
     """Compute BB, shape (n, 19), of boxes of half edges (3,) turned by (n, 3, 3), each shown as its
     box along the world's axes with the identity's quaternion.
     """

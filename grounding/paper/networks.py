@@ -160,14 +160,20 @@ def completed(arguments: Tensor, positions: Tensor, turns: Tensor) -> Tensor:
     half = arguments.shape[-1] // 2
     if half != BB:
         return torch.cat([arguments[..., :half], positions, turns, arguments[..., -CODE:]], dim=-1)
-    products = (turns.unsqueeze(-1) * turns.unsqueeze(-2)).flatten(-2)
-    rotation = torch.matmul(products, _QUADRATIC) + _IDENTITY
     own = arguments[..., -6:]
     extents = (own[..., 3:] - own[..., :3]) * 0.5
-    reach = (rotation.abs().unflatten(-1, (3, 3)) * extents.unsqueeze(-2)).sum(-1)
+    reach = (rotations(turns).abs().unflatten(-1, (3, 3)) * extents.unsqueeze(-2)).sum(-1)
     return torch.cat(
         [arguments[..., :BB], positions, positions - reach, positions + reach, turns, own], dim=-1
     )
+
+
+def rotations(turns: Tensor) -> Tensor:
+    """Convert unit quaternions xyzw, shape (..., 4), to rotation matrices row by row, shape (...,
+    9).
+    """
+    products = (turns.unsqueeze(-1) * turns.unsqueeze(-2)).flatten(-2)
+    return torch.matmul(products, _QUADRATIC) + _IDENTITY
 
 
 def embedding(weights: Mapping[str, Tensor], batch: Batch) -> Tensor:

@@ -45,12 +45,12 @@ class Network:
 
         Args:
             arguments: Shape (n, 2 f).
-            others: Shape (k, f).
+            others: Shape (k, f), or of each situation its own (n, k, f).
         """
         if not self.scene:
             return arguments[:, :0]
         (first, bias), (second, bias_2), (third, bias_3) = self.scene
-        if not len(others):
+        if not others.shape[-2]:
             return np.broadcast_to(bias_3, (len(arguments), len(bias_3)))
         width = arguments.shape[1]
         hidden = (arguments @ first[:width] + bias)[:, None] + others @ first[width:]

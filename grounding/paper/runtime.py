@@ -25,6 +25,7 @@ from grounding.paper.numpy_networks import (
     check_scene,
     read_layers,
 )
+from grounding.paper.turned_proposals import turned_proposals
 from grounding.relation_scene import RelationScene
 from grounding.weights import REMEDY, Weights
 from tamp.errors import InputError
@@ -38,6 +39,11 @@ MIDDLE = "code.middle"
 
 TRIES = "choice.tries"
 """The array, one number, that says among how many proposals the own classifier chooses."""
+
+TURNED = "choice.turned"
+"""The array whose presence says that each proposal is made with the scene turned about the vertical
+otherwise.
+"""
 
 CHOICE = 16
 """Among so many where nothing else is said."""
@@ -66,7 +72,9 @@ class PaperModel:
         self._features = features_in(arrays, self.classifier)
         check_generator(self.generator, self._features.size)
         self._sees = bool(self.classifier.scene or self.generator.scene)
-        self._tries = _tries(arrays)
+        self._tries, self._turned = _tries(arrays), TURNED in arrays
+        if self._turned and not isinstance(self._features, BoxFeatures):
+            raise InputError(f"array '{TURNED}' is for models on boxes", remedy=REMEDY)
 
     def propose(self, situation: RelationScene, count: int, rng: Random) -> Array:
         """Propose `count` poses, in no order: the generator moves argument 1 from where it is, each
@@ -75,13 +83,18 @@ class PaperModel:
         """
         seen = self._features.observe(situation, self._sees)
         noise = rng.standard_normal((count * self._tries, NOISE), dtype=np.float32)
-        positions, turns = generated(self.generator, seen, noise)
-        poses = poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
+        poses = self._poses(seen, noise, rng)
         if self._tries == 1 or not count:
             return poses
         judged_so = classified(self.classifier, self._features, seen, situation, poses)
         best = judged_so.reshape(count, self._tries).argmax(axis=1)
         return poses[np.arange(count) * self._tries + best]
+
+    def _poses(self, seen: FeatureObservation, noise: Floats, rng: Random) -> Array:
+        if self._turned and isinstance(self._features, BoxFeatures):
+            return turned_proposals(self.generator, seen, self._features.residual, noise, rng)
+        positions, turns = generated(self.generator, seen, noise)
+        return poses_of(seen, positions.astype(np.float64), unit(turns.astype(np.float64)))
 
     def classify(self, situation: RelationScene, poses: Array) -> Array:
         """Return the probability that the relation holds with argument 1 at each of the poses,
@@ -215,11 +228,15 @@ def unit(turns: Array) -> Array:
     return units
 
 
-def choosing(weights: Weights, tries: int = CHOICE) -> Weights:
+def choosing(weights: Weights, tries: int = CHOICE, turned: bool = False) -> Weights:
     """Return the weights of the model that proposes, of `tries` poses each time, the one that its
-    own classifier takes for the likeliest to hold.
+    own classifier takes for the likeliest to hold; with `turned` each of them with the scene turned
+    otherwise.
     """
-    return Weights({**weights.arrays, TRIES: np.full(1, tries, np.float32)}, weights.card)
+    extra = {TRIES: np.full(1, tries, np.float32)}
+    if turned:
+        extra[TURNED] = np.ones(1, np.float32)
+    return Weights({**weights.arrays, **extra}, weights.card)
 
 
 def _tries(arrays: Arrays) -> int:

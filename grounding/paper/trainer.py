@@ -27,6 +27,7 @@ from grounding.paper.networks import NOISE, Batch, Ensemble, generate, score
 from grounding.paper.random_streams import random_stream, stacked_draws
 from grounding.paper.trainer_options import AHEAD, VALIDATION, TrainerOptions
 from grounding.paper.trainer_state import load_state, save_state
+from grounding.paper.training_scenes import TrainingScenes
 
 SCHEMES = ("discriminator", "classifier", "both")
 """What teaches the generator: equation 3, equation 4, or both."""
@@ -55,14 +56,9 @@ class Trainer:
     def __post_init__(self) -> None:
         features = self.table.features
         seen = features, self.scene, self.args.attention
-        self._arguments = torch.from_numpy(self.table.arguments)
-        self._others = torch.from_numpy(self.table.others)
-        self._share = torch.from_numpy(self.table.share)
+        self._scenes = TrainingScenes(self.table, self.scene, self.args)
         self._labels = torch.from_numpy(self.table.holds.astype(np.float32))
-        start = [
-            random_stream(size, seed, 0, 0)
-            for size, seed in zip(self.sizes, self.seeds, strict=True)
-        ]
+        start = self._randoms(0, 0)
         self.classifier = Ensemble(networks.classifier_shapes(*seen), start)
         self.critic = Ensemble(networks.critic_shapes(features), start)
         self.generator = Ensemble(networks.generator_shapes(*seen), start)
@@ -157,10 +153,11 @@ class Trainer:
         of the last batches.
         """
         batches = self._draw(self._seen, 1, start, end - start)
+        self._scenes.vary(self._randoms(6, start))
         total = torch.zeros(())
         for step, rows in enumerate(batches.unbind(1), start + 1):
             loss = binary_cross_entropy_with_logits(
-                score(self.classifier.weights, self._batch(rows)),
+                score(self.classifier.weights, self._scenes.batch(rows)),
                 self._labels[rows],
                 reduction="sum",
             )
@@ -181,7 +178,7 @@ class Trainer:
                     name: tensor[model : model + 1]
                     for name, tensor in self.classifier.fixed.items()
                 }
-                scores = score(alone, self._batch(rows[None]))[0]
+                scores = score(alone, self._scenes.as_they_are(rows[None]))[0]
                 loss = binary_cross_entropy_with_logits(scores, self._labels[rows])
             if loss <= self._least[model]:
                 self._least[model] = loss
@@ -196,10 +193,8 @@ class Trainer:
         """
         taught = self.scheme != "classifier"
         steps = [taught * self.args.critic_steps_at(step) for step in range(start + 1, end + 1)]
-        randoms = [
-            random_stream(size, seed, 2, start)
-            for size, seed in zip(self.sizes, self.seeds, strict=True)
-        ]
+        randoms = self._randoms(2, start)
+        self._scenes.vary(self._randoms(5, start))
         scenes = self._draw(self._all, 3, start, sum(steps) + end - start)
         positive = self._draw(self._positive, 4, start, sum(steps))
         done, loss, batch = 0, torch.zeros(()), self.args.batch
@@ -210,8 +205,10 @@ class Trainer:
                 rows = scenes[:, first : first + some].flatten(1)
                 noise = stacked_draws(randoms, torch.randn, (rows.shape[1], NOISE))
                 mixes = stacked_draws(randoms, torch.rand, (rows.shape[1], 1)).split(batch, dim=1)
-                fakes = generate(self.generator.fixed, self._batch(rows), noise).split(batch, dim=1)
-                real = self._arguments[positive[:, first : first + some].flatten(1)].split(
+                fakes = generate(self.generator.fixed, self._scenes.batch(rows), noise).split(
+                    batch, dim=1
+                )
+                real = self._scenes.arguments(positive[:, first : first + some].flatten(1)).split(
                     batch, dim=1
                 )
                 for one, other, mix in zip(real, fakes, mixes, strict=True):
@@ -221,7 +218,7 @@ class Trainer:
             done += count
             rows = scenes[:, sum(steps) + last]
             loss = self._loss(
-                self._batch(rows), stacked_draws(randoms, torch.randn, (batch, NOISE))
+                self._scenes.batch(rows), stacked_draws(randoms, torch.randn, (batch, NOISE))
             )
             loss.backward()
             self.generator.update(self.args.rate)
@@ -269,14 +266,12 @@ class Trainer:
             drawn.append(own[shuffled.flatten()[:wanted]].view(count, self.args.batch))
         return torch.stack(drawn)
 
-    def _batch(self, rows: Tensor) -> Batch:
-        """Gather the scenes of these rows, shape (M, B)."""
-        arguments = self._arguments[rows]
-        return (
-            Batch(arguments, self._others[rows], self._share[rows])
-            if self.scene
-            else Batch(arguments, _NONE, _NONE)
-        )
+    def _randoms(self, stage: int, start: int) -> list[torch.Generator]:
+        """Seed the random numbers of a block of iterations, a source a model."""
+        return [
+            random_stream(size, seed, stage, start)
+            for size, seed in zip(self.sizes, self.seeds, strict=True)
+        ]
 
     def _tensors(self) -> dict[str, Tensor]:
         parts = {"classifier": self.classifier, "critic": self.critic, "generator": self.generator}
@@ -295,6 +290,3 @@ class Trainer:
             digest.update(np.ascontiguousarray(array).data)
         setting = (self.scene, self.scheme, tuple(self.sizes), tuple(self.seeds), self.args)
         return f"{digest.hexdigest()} {setting}"
-
-
-_NONE = torch.zeros(0)

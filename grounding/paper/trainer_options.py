@@ -39,6 +39,10 @@ class TrainerOptions:
             critic's mean length, where both teach; in the paper it is not.
         attention: Whether the surroundings are weighted by a softmax instead of pooled by their
             mean, as the paper's are.
+        turned: Whether each scene is turned about the vertical, and half of them mirrored, anew
+            for each block of iterations.
+        scaled: Whether each is scaled anew for each block.
+        residual: Whether argument 1 is shown unturned; the table of the trainer has it as it is.
         block: Iterations whose random numbers are drawn together, from seed, size, stage and the
             first of them.
     """
@@ -57,6 +61,9 @@ class TrainerOptions:
     mean_weights: float = 0.0
     scaled_classifier: bool = False
     attention: bool = False
+    turned: bool = False
+    scaled: bool = False
+    residual: bool = False
 
     def critic_steps_at(self, step: int) -> int:
         """Return the critic's steps before the generator's step of this number, from 1."""

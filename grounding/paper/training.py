@@ -11,7 +11,7 @@ from grounding.dataset import Dataset
 from grounding.paper.cloud_embeddings import embedding_table
 from grounding.paper.feature_table import FeatureTable, table_of
 from grounding.paper.features import BoxFeatures
-from grounding.paper.runtime import CHOICE, MIDDLE, RESIDUAL, TRIES, NumpyEncoder
+from grounding.paper.runtime import CHOICE, MIDDLE, RESIDUAL, TRIES, TURNED, NumpyEncoder
 from grounding.paper.trainer import SCHEMES, Trainer
 from grounding.paper.trainer_options import TrainerOptions
 from grounding.train_options import NETWORKS
@@ -25,14 +25,24 @@ DEPARTURES = (
     "scaled-classifier",
     "attention",
     "own-choice",
+    "turned-scenes",
+    "scaled-scenes",
+    "edge-negatives",
+    "turned-proposals",
 )
 """What may be done otherwise than in the paper: the generator on boxes turns argument 1 from where
 it was, as the published one on clouds does; a code is of the cloud about the middle of its extent,
 where its position is, not about its centroid; the running mean of the generator's weights is kept;
 the classifier's gradient is brought to the critic's length where both teach; a GNN weights the
 surroundings by a softmax instead of taking their mean; of CHOICE proposals the one that the own
-classifier takes for the likeliest is returned.
+classifier takes for the likeliest is returned; scenes are turned about the vertical, and half of
+them mirrored, anew for each block of iterations; they are scaled likewise; the data set has
+negatives close by the limits (`grounding.paper.edge_negatives`); each proposal is made with the
+scene turned otherwise, and turned back.
 """
+
+VARYING = ("turned-scenes", "scaled-scenes")
+"""Those by which scenes are shown otherwise in each block of iterations; of boxes only."""
 
 MEAN_WEIGHTS = 0.999
 """The share of the running mean that is kept a step."""
@@ -78,12 +88,19 @@ def train(
     _check(data, model, scheme, sizes, seeds, encoder, departures)
     residual = _clouds(model) or "residual-turn" in departures
     about_middle = "middle-code" in departures
-    table = table or features_of(data, model, encoder, progress, max(sizes), residual, about_middle)
+    varied = any(name in departures for name in VARYING)
+    shown_unturned = residual and not varied  # else after scenes were turned
+    table = table or features_of(
+        data, model, encoder, progress, max(sizes), shown_unturned, about_middle
+    )
     args = TrainerOptions(
         iterations=iterations,
         mean_weights=MEAN_WEIGHTS if "mean-weights" in departures else 0.0,
         scaled_classifier="scaled-classifier" in departures,
         attention="attention" in departures,
+        turned="turned-scenes" in departures,
+        scaled="scaled-scenes" in departures,
+        residual=varied and residual,
     )
     trainer = Trainer(table, model.startswith("gnn"), scheme, sizes, seeds, args)
     if classifiers:
@@ -100,6 +117,8 @@ def train(
         extra[MIDDLE] = np.ones(1, np.float32)
     if "own-choice" in departures:
         extra[TRIES] = np.full(1, CHOICE, np.float32)
+    if "turned-proposals" in departures:
+        extra[TURNED] = np.ones(1, np.float32)
 
     return [
         Weights(
@@ -114,7 +133,7 @@ def train(
                 "iterations": iterations,
                 "data": {
                     key: data.card[key]
-                    for key in ("split", "seed", "count", "commit", "layout")
+                    for key in ("split", "seed", "count", "commit", "layout", "edges")
                     if key in data.card
                 },
                 "architecture": {name: list(array.shape) for name, array in arrays.items()},
@@ -166,6 +185,15 @@ def _check(
     for found in departures:
         if found not in DEPARTURES:
             raise InputError(f"unknown departure '{found}'", found=found, choices=DEPARTURES)
+    boxes_only = {*departures} & {*VARYING, "turned-proposals"}
+    if boxes_only and _clouds(model):
+        raise InputError(f"model '{model}' sees clouds; {min(boxes_only)} is for models on boxes")
+    if ("edge-negatives" in departures) != bool(data.card.get("edges")):
+        have = "has" if data.card.get("edges") else "lacks"
+        raise InputError(
+            f"the data set {have} negatives close by the limits",
+            remedy="--departures edge-negatives goes with data of tamp-learn generate --edges",
+        )
     if "middle-code" in departures and not _clouds(model):
         raise InputError(f"model '{model}' sees no clouds, whose codes middle-code changes")
     if "attention" in departures and model.startswith("mlp"):

@@ -89,4 +89,6 @@ def test_mistakes_are_said(words: str, said: str) -> None:
 
 def test_data_lie_by_relation_and_split() -> None:
     assert data_file("on", "train") == Path("data/on_train.npz")
+    assert data_file("on", "train", "paper", True) == Path("data/on_paper_edges_train.npz")
+    assert data_file("on", "test", "paper") == Path("data/on_paper_test.npz")
     assert data_file("inside", "test") == Path("data/inside_test.npz")

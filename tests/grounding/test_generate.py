@@ -10,6 +10,7 @@ from grounding.dataset import Dataset, read_dataset
 from grounding.demonstrations import KINDS, POSITIVE
 from grounding.generate import Job, generate, kinds_of
 from grounding.oracles import ItemOf, Verdict, drop_verdicts, paper_oracle
+from grounding.paper.edge_negatives import EDGE_KINDS
 from grounding.separation import Obstacles, separations
 from tamp.errors import InputError
 from tamp.simulation.engines import open_drops
@@ -34,8 +35,8 @@ def test_labels_are_what_physics_says(data: Dataset) -> None:
 
 
 def test_kinds_have_the_papers_shares() -> None:
-    for relation, shares in KINDS.items():
-        kinds = kinds_of(relation, 400)
+    for shares in (*KINDS.values(), *EDGE_KINDS.values()):
+        kinds = kinds_of(shares, 400)
         assert sum(shares.values()) == pytest.approx(1.0)
         assert {kind: kinds.count(kind) / 400 for kind in shares} == pytest.approx(
             shares, abs=0.005
@@ -80,3 +81,14 @@ def test_separations_never_promise_too_much(data: Dataset) -> None:
 def test_an_unknown_layout_is_named(tmp_path) -> None:
     with pytest.raises(InputError, match="unknown layout 'papre'"):
         generate(Job("on", "train", 4, layout="papre"), tmp_path / "x.npz", workers=1)
+
+
+def test_negatives_at_the_edges_are_of_the_papers_layout_and_in_the_card(tmp_path: Path) -> None:
+    path = tmp_path / "x.npz"
+    with pytest.raises(InputError, match="'household' has no --edges"):
+        generate(Job("on", "train", 40, edges=True), path, workers=1)
+    job = Job("on", "train", 40, layout="paper", edges=True)
+    data = generate(job, path, workers=1)
+    assert data.card["edges"] is True and data.card["by type"]["beside"] == 4
+    assert job.key != Job("on", "train", 40, layout="paper").key
+    assert "edges" not in Job("on", "train", 40, layout="paper").card({})

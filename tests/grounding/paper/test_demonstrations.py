@@ -9,15 +9,19 @@ import pytest
 
 from grounding.body_geometry import BodyGeometry
 from grounding.demonstrations import KINDS, POSITIVE
-from grounding.paper.demonstrations import CROWDED, SHIFT_M, PaperDemonstrations, _over
+from grounding.paper.demonstrations import (
+    CROWDED,
+    HALF_CROWDED,
+    SHIFT_M,
+    TOUCHING,
+    PaperDemonstrations,
+)
+from grounding.paper.edge_negatives import EDGE_KINDS
 from grounding.paper.oracle import in_place
-from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M, paper_supports
+from grounding.paper.scenes import AIR_HEIGHTS_M, FLOOR_AREA_M
 from grounding.relation_scene import Placed, near
-from grounding.scenes import LabelledScene, SampledScene
-from grounding.separation import Obstacles
-from tamp.geometric.scene.pose import Array, Pose
+from grounding.scenes import LabelledScene
 from tamp.simulation.drops import Drops
-from tests.grounding.forms import box
 
 SCENES = 2
 """Of each kind."""
@@ -53,7 +57,7 @@ def lowest(scene: LabelledScene, form: BodyGeometry) -> float:
 
 @pytest.mark.parametrize("relation", KINDS)
 def test_a_kind_holds_or_does_not(made: Made, relation: str) -> None:
-    for kind in KINDS[relation]:
+    for kind in {*KINDS[relation], *EDGE_KINDS[relation]}:
         for scene, _ in made(relation, kind):
             assert scene.kind == kind and scene.holds is (kind in POSITIVE) and scene.feasible
 
@@ -93,27 +97,25 @@ def test_what_is_afloat_is_in_the_air_and_what_is_on_the_ground_lies_there(
 
 @pytest.mark.parametrize("relation", KINDS)
 def test_only_crowded_scenes_have_bodies_on_their_support(made: Made, relation: str) -> None:
-    for kind in KINDS[relation]:
-        if kind == "sticking out":
-            continue  # half of them are
+    for kind in {*KINDS[relation], *EDGE_KINDS[relation]} - {*HALF_CROWDED}:
         for scene, _ in made(relation, kind):
             region = scene.poses[0] @ scene.support.region.matrix
             local = [np.linalg.inv(region) @ pose[:, 3] for pose in scene.poses[3:]]
             half = scene.support.region.size[:2] / 2
             there = [(np.abs(at[:2]) <= half).all() and at[2] > 0.0 for at in local]
             assert any(there) <= (kind in CROWDED)
-            assert kind != "colliding" or any(there)
+            assert kind not in TOUCHING or any(there)
 
 
 def test_inside_is_labelled_by_where_the_box_is_but_for_contacts(made: Made) -> None:
-    for kind in KINDS["inside"]:
+    for kind in {*KINDS["inside"], *EDGE_KINDS["inside"]}:
         for scene, form in made("inside", kind):
             stand = Placed(
                 BodyGeometry(scene.support.parts).scaled(scene.scales[0]), scene.poses[0]
             )
             situation = near(stand, scene.support.region, Placed(form, scene.poses[1]), [])
             there = bool(in_place(situation, scene.poses[1][None])[0])
-            assert kind == "colliding" or there is scene.holds
+            assert kind in TOUCHING or there is scene.holds
 
 
 @pytest.mark.parametrize("split", ["train", "test"])
@@ -126,25 +128,3 @@ def test_only_of_test_scenes_somebody_asks_whether_they_can_be_solved(
     assert maker.make("alone", rng).feasible and asked == []
     assert maker.make("afloat", rng).feasible is (split == "train")
     assert len(asked) == (split == "test")
-
-
-def scene_with(at: Array) -> tuple[SampledScene, Placed]:
-    """A body somewhere about a support that is turned."""
-    support = next(iter(paper_supports("on", "train").values()))
-    form, T_world_stand = BodyGeometry(support.parts), Pose.from_xyz_yaw(1.0, -0.5, 0.0, 0.7).matrix
-    region = T_world_stand @ support.region.matrix
-    other = Placed(box(0.05, 0.05, 0.05), region @ Pose(tuple(at)).matrix)
-    scene = SampledScene(
-        ("stand", "cube"), (1.0, 1.0), Placed(form, T_world_stand), support, other.form,
-        (("cube", 1.0, other),), Obstacles([other]), region,
-    )  # fmt: skip
-    return scene, other
-
-
-def test_a_body_over_the_region_is_on_it() -> None:
-    half = next(iter(paper_supports("on", "train").values())).region.size[:2] / 2
-    for x, y, z, over in (
-        (0.0, 0.0, 0.025, True), (0.99, -0.99, 0.025, True), (1.01, 0.0, 0.025, False),
-        (0.0, -1.01, 0.025, False), (0.0, 0.0, -0.3, False),
-    ):  # fmt: skip
-        assert _over(*scene_with(np.array([x * half[0], y * half[1], z]))) is over

@@ -24,9 +24,13 @@ def trained(table, sizes, seeds, scheme="both", **args):
     return list(trainer.models())
 
 
-def test_a_model_is_what_it_would_be_if_trained_alone(table):
-    together = trained(table, [240, 20], [0, 3], iterations=3)
-    alone = trained(table, [20], [3], iterations=3)
+VARIED = {"turned": True, "scaled": True, "residual": True}
+
+
+@pytest.mark.parametrize("varied", [{}, VARIED])
+def test_a_model_is_what_it_would_be_if_trained_alone(table, varied):
+    together = trained(table, [240, 20], [0, 3], iterations=3, **varied)
+    alone = trained(table, [20], [3], iterations=3, **varied)
     assert len(together[1]) == 24
     for name, array in together[1].items():
         np.testing.assert_allclose(array, alone[0][name], atol=1e-4)
@@ -43,7 +47,8 @@ def test_the_same_seed_gives_the_same_weights(table, scheme):
     )
 
 
-def test_a_run_goes_on_from_its_state(table, tmp_path):
+@pytest.mark.parametrize("varied", [{}, VARIED])
+def test_a_run_goes_on_from_its_state(table, tmp_path, varied):
     class Stop(Exception):
         pass
 
@@ -51,7 +56,7 @@ def test_a_run_goes_on_from_its_state(table, tmp_path):
         if line.startswith("generator 2"):
             raise Stop
 
-    args = TrainerOptions(iterations=6, critic_catches_up=3, save_every=2, block=2)
+    args = TrainerOptions(iterations=6, critic_catches_up=3, save_every=2, block=2, **varied)
     whole, cut, resumed = (Trainer(table, True, "both", [240, 20], [0, 3], args) for _ in range(3))
     whole.run()
     state = tmp_path / "state.safetensors"
@@ -92,7 +97,7 @@ def test_the_classifiers_gradient_is_brought_to_the_critics_length(table):
     options = TrainerOptions(iterations=1, critic_catches_up=2, scaled_classifier=True)
     trainer = Trainer(table, True, "both", [240, 20], [0, 3], options)
     trainer.critic.flat.mul_(7.0)  # as one that is far ahead
-    seen = trainer._batch(torch.arange(16).expand(2, 16))
+    seen = trainer._scenes.batch(torch.arange(16).expand(2, 16))
     proposed = Batch(seen.arguments.clone().requires_grad_(), seen.others, seen.share)
 
     def slope(loss):

@@ -1,0 +1,78 @@
+"""The ways to train the paper's networks that `benchmarks.paper_variants` compares, each a row."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+SCHEMES = ("discriminator", "both", "classifier")
+"""What teaches a generator: equation 3 of the paper, the sum of both, equation 4."""
+
+
+EDGES = "edge-negatives"
+"""The departure that has a training set of its own."""
+
+CLASSIFIERS = ("residual-turn", "middle-code", "attention", "turned-scenes", "scaled-scenes", EDGES)
+"""The departures that change classifiers, too."""
+
+CHOICE, TURNED = "own-choice", "turned-proposals"
+"""The departures that change nothing in training."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to train one of the paper's networks.
+
+    Attributes:
+        model: Network and features.
+        scheme: What teaches the generator.
+        departures: What is done otherwise than in the paper.
+    """
+
+    model: str
+    scheme: str
+    departures: tuple[str, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """Its row's name."""
+        return " + ".join([f"{self.model} {self.scheme}", *self.departures])
+
+    @property
+    def trained(self) -> Variant:
+        """What is trained for it."""
+        return replace(self, departures=tuple(name for name in self.departures if name not in (CHOICE, TURNED)))
+
+    def set_name(self, relation: str, split: str) -> str:
+        """The name of its data set."""
+        edges = "edges_" if EDGES in self.departures and split == "train" else ""
+        return f"{relation}_paper_{edges}{split}.npz"
+
+
+BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in SCHEMES]
+CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
+MIDDLE = ("middle-code",)
+MEAN = ("mean-weights",)
+SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
+DEPARTED = [
+    Variant("mlp-bb", "discriminator", ("residual-turn",)),
+    Variant("mlp-bb", "both", ("residual-turn", "scaled-classifier")),
+    Variant("mlp-bb", "discriminator", MEAN),
+    Variant("gnn-bb", "discriminator", MEAN),
+    Variant("gnn-bb", "discriminator", (*MEAN, "own-choice")),
+    Variant("gnn-bb", "discriminator", (*MEAN, "attention")),
+    Variant("gnn-bb", "discriminator", (*MEAN, "attention", "own-choice")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights", "own-choice")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention")),
+    Variant("gnn-bb", "discriminator", ("residual-turn", *MEAN, "attention", "own-choice")),
+    Variant("gnn-bb", "both", SCALED),
+    Variant("gnn-bb", "both", (*SCALED, "attention")),
+    Variant("gnn-bb", "both", (*SCALED, "attention", "own-choice")),
+    Variant("mlp-pc", "discriminator", MIDDLE),
+    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights")),
+    Variant("mlp-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
+    Variant("gnn-pc", "discriminator", MIDDLE),
+    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights")),
+    Variant("gnn-pc", "discriminator", (*MIDDLE, "mean-weights", "own-choice")),
+]
+VARIANTS = [*BOXES, *CLOUDS, *DEPARTED]
