@@ -52,6 +52,8 @@ BOXES = [Variant(model, scheme) for model in ("mlp-bb", "gnn-bb") for scheme in 
 CLOUDS = [Variant(model, "discriminator") for model in ("mlp-pc", "gnn-pc")]
 MIDDLE = ("middle-code",)
 MEAN = ("mean-weights",)
+VARIED = (*MEAN, "turned-scenes", "scaled-scenes")
+CHOSEN = ("own-choice", "turned-proposals")
 SCALED = ("residual-turn", "mean-weights", "scaled-classifier")
 DEPARTED = [
     Variant("mlp-bb", "discriminator", ("residual-turn",)),
@@ -59,6 +61,15 @@ DEPARTED = [
     Variant("mlp-bb", "discriminator", MEAN),
     Variant("gnn-bb", "discriminator", MEAN),
     Variant("gnn-bb", "discriminator", (*MEAN, "own-choice")),
+    Variant("gnn-bb", "discriminator", (*MEAN, *CHOSEN)),
+    Variant("gnn-bb", "discriminator", (*VARIED, EDGES)),
+    Variant("gnn-bb", "discriminator", (*VARIED, EDGES, "own-choice")),
+    Variant("gnn-bb", "discriminator", (*VARIED, EDGES, *CHOSEN)),
+    Variant("gnn-bb", "discriminator", (*MEAN, EDGES)),
+    Variant("gnn-bb", "discriminator", (*MEAN, EDGES, "own-choice")),
+    Variant("gnn-bb", "discriminator", (*MEAN, EDGES, *CHOSEN)),
+    Variant("gnn-bb", "discriminator", VARIED),
+    Variant("gnn-bb", "discriminator", (*VARIED, *CHOSEN)),
     Variant("gnn-bb", "discriminator", (*MEAN, "attention")),
     Variant("gnn-bb", "discriminator", (*MEAN, "attention", "own-choice")),
     Variant("gnn-bb", "discriminator", ("residual-turn", "mean-weights")),

@@ -9,6 +9,7 @@ from grounding.paper.rotations import rotations
 from grounding.paper.runtime import (
     CHOICE,
     TRIES,
+    TURNED,
     NumpyEncoder,
     PaperModel,
     choosing,
@@ -104,3 +105,5 @@ def test_who_chooses_says_among_how_many():
     weights = Weights({"x": np.zeros(1)}, {"model": "mlp-bb"})
     assert choosing(weights).arrays[TRIES].tolist() == [CHOICE] and TRIES not in weights.arrays
     assert choosing(weights, 3).arrays[TRIES].tolist() == [3.0]
+    turned = choosing(weights, 3, turned=True).arrays
+    assert turned[TURNED].tolist() == [1.0] and turned[TRIES].tolist() == [3.0]

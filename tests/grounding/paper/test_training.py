@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 import torch
 
+from grounding.dataset import Dataset
 from grounding.paper.encoders import train_encoder
-from grounding.paper.runtime import PaperModel
+from grounding.paper.runtime import RESIDUAL, TURNED, PaperModel
 from grounding.paper.training import features_of, train
 from grounding.weights import Weights
 from tamp.errors import InputError
@@ -74,6 +75,12 @@ def test_another_runs_state_is_refused(data, tmp_path):
         ({"sizes": [20], "seeds": []}, "1 sizes for 0 seeds"),
         ({"model": "mlp-pc"}, "needs an encoder"),
         ({"departures": ["middle-code"]}, "'mlp-bb' sees no clouds"),
+        ({"departures": ["edge-negatives"]}, "lacks negatives close by the limits"),
+        ({"model": "mlp-pc", "departures": ["turned-scenes"]}, "turned-scenes is for models on bo"),
+        (
+            {"model": "gnn-pc", "departures": ["turned-proposals"]},
+            "turned-proposals is for models on boxes",
+        ),
     ],
 )
 def test_what_cannot_be_trained_is_said(data, change, message):
@@ -86,3 +93,27 @@ def test_threads_are_as_they_were(data):
     before = torch.get_num_threads()
     train(data, "mlp-bb", "classifier", sizes=[20], seeds=[0], iterations=1)
     assert torch.get_num_threads() == before
+
+
+def test_data_with_negatives_at_the_edges_are_a_departure(data):
+    edges = Dataset(data.arrays, data.templates, data.kinds, {**data.card, "edges": True})
+    setting = {"sizes": [20], "seeds": [0], "iterations": 1}
+    with pytest.raises(InputError, match="has negatives close by the limits"):
+        train(edges, "mlp-bb", "classifier", **setting)
+    (made,) = train(edges, "mlp-bb", "classifier", departures=["edge-negatives"], **setting)
+    assert made.card["data"]["edges"] is True
+
+
+def test_scenes_are_turned_and_scaled_where_that_is_asked_for(data):
+    setting = {"sizes": [20], "seeds": [0], "iterations": 2}
+    ways = [(), ("turned-scenes",), ("scaled-scenes",), ("turned-scenes", "residual-turn")]
+    made = [train(data, "gnn-bb", "discriminator", departures=way, **setting)[0] for way in ways]
+    layers = [one.arrays["generator.main.0.weight"].tobytes() for one in made]
+    assert len({*layers}) == len(ways)
+    assert [RESIDUAL in one.arrays for one in made] == [False, False, False, True]
+
+
+def test_turned_proposals_are_asked_for_in_the_weights(data):
+    setting = {"sizes": [20], "seeds": [0], "iterations": 1}
+    (made,) = train(data, "mlp-bb", "classifier", departures=["turned-proposals"], **setting)
+    assert TURNED in made.arrays
