@@ -104,14 +104,9 @@ def _generate(chosen: Generate, show: ReportProgress) -> None:
     out = chosen.out or data_file(chosen.relation, chosen.split, chosen.layout, chosen.edges)
     check_out(out, DATA, mesh_files(chosen))
     job = Job(
-        chosen.relation,
-        chosen.split,
-        chosen.count,
-        chosen.seed,
-        _meshes(chosen),
-        chosen.layout,
+        chosen.relation, chosen.split, chosen.count, chosen.seed, _meshes(chosen), chosen.layout,
         chosen.edges,
-    )
+    )  # fmt: skip
     data = generate(
         job,
         out,

@@ -169,6 +169,7 @@ def test_torch_stays_where_training_is() -> None:
                 "random_streams",
                 "trainer",
                 "trainer_state",
+                "training_scenes",
                 "tree_training",
             )
         ),
