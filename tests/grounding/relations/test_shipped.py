@@ -56,6 +56,15 @@ def test_what_ships_is_right_about_scenes_that_it_was_not_shown(
     assert max(other_way) < 0.5, "none of the four holds both ways round"
 
 
+def rounded(value: Any) -> Any:
+    """Numbers to a billionth: sines differ in their last bit from processor to processor."""
+    if isinstance(value, float):
+        return round(value, 9)
+    if isinstance(value, dict):
+        return {key: rounded(one) for key, one in value.items()}
+    return [rounded(one) for one in value] if isinstance(value, list) else value
+
+
 @pytest.mark.slow
 def test_what_ships_is_what_the_documented_commands_make(
     show: ModuleType, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -70,7 +79,7 @@ def test_what_ships_is_what_the_documented_commands_make(
 
         made, ships = read_weights(out), read_weights(shipped_weights(name, "learned"))
         assert "missing: " not in capsys.readouterr().out, "nothing is left to be shown"
-        assert made.card["examples"] == ships.card["examples"]
+        assert rounded(made.card["examples"]) == rounded(ships.card["examples"])
         assert {*made.arrays} == {*ships.arrays}
         for key, array in made.arrays.items():
             np.testing.assert_allclose(array, ships.arrays[key], atol=1e-6, err_msg=key)
