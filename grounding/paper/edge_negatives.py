@@ -76,10 +76,8 @@ def beside(scenes: PaperScenes, scene: SampledScene, rng: Random) -> Array | Non
 
 def grazing(scenes: PaperScenes, scene: SampledScene, rng: Random) -> Array | None:
     """Put the body where it is a little in another one that is on or in argument 0."""
-    poses, with_it = (
-        scenes.resting(scene, rng),
-        [item for item in scene.placed[1:] if is_with(scene, item)],
-    )
+    poses = scenes.resting(scene, rng)
+    with_it = [item for item in scene.placed[1:] if is_with(scene, item)]
     if not len(poses) or not with_it:
         return None
 

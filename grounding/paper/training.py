@@ -192,7 +192,8 @@ def _check(
         have = "has" if data.card.get("edges") else "lacks"
         raise InputError(
             f"the data set {have} negatives close by the limits",
-            remedy="--departures edge-negatives goes with data of tamp-learn generate --edges",
+            remedy="--departures edge-negatives goes with data of "
+            "tamp-learn generate --layout paper --edges",
         )
     if "middle-code" in departures and not _clouds(model):
         raise InputError(f"model '{model}' sees no clouds, whose codes middle-code changes")
