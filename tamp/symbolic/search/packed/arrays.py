@@ -212,6 +212,7 @@ class Scratch(NamedTuple):
     heap_ties: int
     heap_items: int
     seen: int
+    paying: int
     plan: int
     in_plan: int
     applicable: int

@@ -177,7 +177,7 @@ def relaxed_plan(ints, reals, t, r, x):
         reals[x.bounds + fact] = math.inf
         reals[x.provided + fact] = math.inf
 
-    size, total = 0, 0.0
+    size, paid = 0, 0
     for k in range(r.goal_count):
         goal = ints[r.goals + k]
         if reals[x.reached + goal] == math.inf:
@@ -195,7 +195,8 @@ def relaxed_plan(ints, reals, t, r, x):
         i = ints[x.supporters + fact]
         if i < 0:
             if fact >= r.base:
-                total += reals[x.reached + fact]
+                ints[x.paying + paid] = fact
+                paid += 1
             continue
         if (
             reals[x.provided + fact] < math.inf
@@ -225,6 +226,15 @@ def relaxed_plan(ints, reals, t, r, x):
                 )
                 size += 1
 
+    for i in range(r.first_remover, r.operators if paid else 0):
+        guard = ints[r.effects + ints[r.effects_starts + i]]
+        removed = ints[r.before + ints[r.before_starts + i]]
+        if ints[x.seen + guard] and reals[x.provided + removed] < math.inf:
+            ints[x.supporters + guard] = i
+    total = 0.0
+    for k in range(paid):
+        if ints[x.supporters + ints[x.paying + k]] < 0:
+            total += reals[x.reached + ints[x.paying + k]]
     price, count = gathered(ints, reals, t, x)
     return total + price, count
 

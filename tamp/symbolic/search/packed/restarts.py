@@ -15,7 +15,7 @@ from itertools import count
 from random import Random
 
 from tamp.symbolic.search.expansion import Plan, SearchSpace
-from tamp.symbolic.search.goal_agenda import goal_agenda, one_by_one
+from tamp.symbolic.search.goal_agenda import goal_agenda, guard_agenda, one_by_one
 from tamp.symbolic.search.heuristics.goal_price import GoalPrice
 from tamp.symbolic.search.packed.search import PackedSearch, Stalled
 from tamp.symbolic.search.plan_shortening import eliminate_actions
@@ -73,20 +73,27 @@ def _turns(ways: Sequence[Way]) -> Iterator[Way | None]:
 
 
 def greedy_with_restarts(search: SearchSpace, names: Sequence[str], seed: int = 0) -> Plan | None:
-    """Search greedily; where that stalls, begin anew in random order, with growing limits.
+    """Search greedily, by parts of the goal where guards order them; where that stalls, begin anew
+    in random order, with growing limits.
 
     Args:
         search: The task, its limits and counts.
         names: The heuristics of the first search.
         seed: Of the random orders.
     """
+    rng = Random(seed)
+    by_guards = guard_agenda(search.successors)
+    if len(by_guards) > 1:
+        try:
+            return by_agenda(search, Way(tuple(names), agenda=tuple(by_guards)), 0, STALLED_STATES)
+        except Stalled:
+            pass
     first = PackedSearch(search, names, math.inf)
     try:
         return first.plan(STALLED_STATES)
     except Stalled:
         pass
 
-    rng = Random(seed)
     turns = _turns(ways(names, goal_agenda(search.successors, search.deadline)))
     for number, way in zip(count(1), turns, strict=False):
         states = SHORTEST_RESTART_STATES * luby(number)
