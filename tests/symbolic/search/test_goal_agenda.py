@@ -12,15 +12,16 @@ from tamp.symbolic.pddl.parser import parse_domain
 from tamp.symbolic.pddl.tasks import parse_task
 from tamp.symbolic.search import goal_agenda as module
 from tamp.symbolic.search.expansion import SearchSpace
-from tamp.symbolic.search.goal_agenda import goal_agenda, levels
+from tamp.symbolic.search.goal_agenda import goal_agenda, guard_agenda, levels
 from tamp.symbolic.search.instantiation.instantiator import instantiate
 from tamp.symbolic.search.mutex import Mutexes
+from tamp.symbolic.search.operators import Guard, Operator
 from tamp.symbolic.search.packed.restarts import Way, by_agenda
 from tamp.symbolic.search.packed.search import Stalled
 from tamp.symbolic.search.successors import State, Successors
 from tamp.system.deadline import Deadline
 from tests.symbolic.search.interpreter import Interpreter
-from tests.symbolic.search.packed.room import operator, task
+from tests.symbolic.search.packed.room import axiom, facts, operator, task
 from tests.symbolic.search.test_random_tasks import random_task
 
 TOWER = """(define (problem tower) (:domain blocks) (:objects a b c d - block)
@@ -80,6 +81,50 @@ def test_an_achiever_by_a_conditional_effect_lifts_the_order() -> None:
     rain = operator("rain", when=[("", "", "painted", "")])
     s = Successors(task([PAINT, rain, CLEAN], goal="painted clean"), {})
     assert goal_agenda(s) == [s.goal]
+
+
+SQUEEZED = {("squeezed",): 5.0}
+DEEP = operator("deep", "", "back", guards=(Guard(facts("front"), ("squeezed",)),))
+NEAR = operator("near", "", "front")
+
+
+@pytest.mark.parametrize("price", [5.0, math.inf])
+def test_what_a_goal_makes_dearer_comes_before_it(price: float) -> None:
+    s = Successors(task([NEAR, DEEP], goal="front back"), {("squeezed",): price})
+    assert named(s, guard_agenda(s)) == [{"back"}, {"back", "front"}]
+    assert goal_agenda(s) == guard_agenda(s)
+
+
+@pytest.mark.parametrize(
+    ("more", "goal", "rules"),
+    [
+        ([operator("lift", "", "back")], "front back", []),  # another way that costs nothing
+        (
+            [operator("beside", "", "front2")],
+            "ahead back",
+            [("ahead", "front"), ("ahead", "front2")],
+        ),
+        ([operator("rain", when=[("", "", "back", "")])], "front back", []),
+        ([], "front other back2", [("back2", "back front")]),  # of two facts: not ordered
+    ],
+)
+def test_guards_order_nothing_where_one_way_is_free(
+    more: list[Operator], goal: str, rules: list[tuple[str, str]]
+) -> None:
+    made = task([NEAR, DEEP, *more], goal, axioms=[axiom(*rule) for rule in rules])
+    s = Successors(made, SQUEEZED)
+    assert guard_agenda(s) == [s.goal]
+
+
+def test_guards_order_goals_that_are_derived_from_what_operators_add() -> None:
+    rules = [axiom("on1", "front"), axiom("on2", "back")]
+    s = Successors(task([NEAR, DEEP], "on1 on2", axioms=rules), SQUEEZED)
+    assert named(s, guard_agenda(s)) == [{"on2"}, {"on1", "on2"}]
+
+
+def test_guards_that_cost_nothing_order_nothing() -> None:
+    s = Successors(task([NEAR, DEEP], goal="front back"), {})
+    assert guard_agenda(s) == [s.goal]
 
 
 @pytest.mark.parametrize("reason", ["size", "time"])

@@ -89,7 +89,8 @@ class Arena:
             "on": t.guards, "active": r.keys, "supporters": r.facts, "left": r.operators,
             "heads": buckets, "tails": buckets, "entry_next": events, "entry_fact": events,
             "heap_ties": events, "heap_items": events, "seen": r.facts, "paying": r.keys,
-            "plan": n, "in_plan": n, "applicable": n, "is_applicable": n, "helpful": n, "is_helpful": n, "ranks": n,
+            "plan": n, "in_plan": n, "applicable": n, "is_applicable": n, "helpful": n,
+            "is_helpful": n, "ranks": n,
             "now": r.mark_words, "remaining": r.mark_words, "found": n, "found_order": n,
             "found_class": n, "class_size": n, "class_at": n,
         }  # fmt: skip

@@ -8,10 +8,13 @@ from typing import Any, ClassVar
 
 import pytest
 
-from tamp.symbolic.search.expansion import Plan
+from tamp.symbolic.search.expansion import Plan, SearchSpace
+from tamp.symbolic.search.operators import Guard
 from tamp.symbolic.search.packed import restarts
 from tamp.symbolic.search.packed.restarts import Way
 from tamp.symbolic.search.packed.search import Stalled
+from tamp.symbolic.search.successors import Successors
+from tests.symbolic.search.packed.room import facts, operator, task
 
 PLAN = Plan((), 1.0)
 
@@ -43,6 +46,7 @@ def asked(
     Scripted.asked, Scripted.made, Scripted.found_at = [], 0, found_at
     monkeypatch.setattr(restarts, "PackedSearch", Scripted)
     monkeypatch.setattr(restarts, "goal_agenda", lambda s, deadline: [1])
+    monkeypatch.setattr(restarts, "guard_agenda", lambda s: [1])
     search = SimpleNamespace(successors=None, deadline=None)
     assert restarts.greedy_with_restarts(search, names, seed) is PLAN  # type: ignore[arg-type]
     return Scripted.asked
@@ -109,7 +113,36 @@ def test_a_stalled_agenda_gives_way_to_the_others(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(restarts, "PackedSearch", Scripted)
     monkeypatch.setattr(restarts, "by_agenda", by_agenda)
     monkeypatch.setattr(restarts, "goal_agenda", lambda s, deadline: [1, 3])
+    monkeypatch.setattr(restarts, "guard_agenda", lambda s: [1])
     search = SimpleNamespace(successors=None, deadline=None)
     assert restarts.greedy_with_restarts(search, ("ff",)) is PLAN  # type: ignore[arg-type]
     assert [number for number, *_ in Scripted.asked] == [1, 2, 1, 3]
     assert taken == [((1, 3), False), ((1, 3), True)] * 2
+
+
+def test_goals_that_guards_order_come_in_parts_from_the_start() -> None:
+    """Where the front is full the back costs 9 more, and nothing empties it again: the back first."""
+    guard = Guard(facts("front"), ("squeezed",))
+    operators = [
+        operator("near", "", "front"), operator("deep", "", "back", guards=(guard,)),
+        *(operator(f"idle{k}", "", f"i{k}") for k in range(3)),
+    ]  # fmt: skip
+    s = Successors(task(operators, "front back"), {("squeezed",): 9.0})
+    run = SearchSpace(s, [], None, None)
+    plan = restarts.greedy_with_restarts(run, ("ff",))
+    assert plan is not None
+    assert [operator.name for operator in plan.operators] == ["deep", "near"]
+    assert plan.cost == 2.0 and run.expanded == 2
+
+
+def test_an_order_by_guards_into_a_dead_end_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Deep uses up the key that near needs, too; near gives it back."""
+    guard = Guard(facts("front"), ("squeezed",))
+    operators = [
+        operator("near", "key", "front"), operator("deep", "key", "back", deleted="key", guards=(guard,)),
+    ]  # fmt: skip
+    s = Successors(task(operators, "front back", "key"), {("squeezed",): 9.0})
+    assert len(restarts.guard_agenda(s)) == 2
+    plan = restarts.greedy_with_restarts(SearchSpace(s, [], None, None), ("ff",))
+    assert plan is not None and plan.cost == 11.0
+    assert [operator.name for operator in plan.operators] == ["near", "deep"]

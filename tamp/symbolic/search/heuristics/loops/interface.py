@@ -6,7 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, csr_rows
+from tamp.symbolic.search.heuristics.loops.rows import (
+    CsrRows,
+    Integers,
+    Reals,
+    WritableIntegers,
+    csr_rows,
+)
 
 FOLDER = Path(__file__).resolve().parent
 SOURCES = ("rows", "kernels", "landmark_queue", "landmark_cuts")
@@ -18,10 +24,11 @@ class Kernels:
     """The inner loops, and what makes the lists that they take."""
 
     explore: Callable[
-        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]
+        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool],
+        tuple[Reals, WritableIntegers],
     ]
     relaxed_plan: Callable[
-        [Reals, Integers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
+        [Reals, WritableIntegers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
         tuple[float, Integers],
     ]
     landmark_cut: Callable[

@@ -7,7 +7,14 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, count_up, full
+from tamp.symbolic.search.heuristics.loops.rows import (
+    CsrRows,
+    Integers,
+    Reals,
+    WritableIntegers,
+    count_up,
+    full,
+)
 
 
 def _before(fact: int, other: int, keys: Reals, ranks: Integers) -> bool:
@@ -112,7 +119,7 @@ def explore(
 
 
 def relaxed_plan(
-    reached: Reals, supporters: Integers, before: CsrRows, effects: CsrRows, costs: Reals,
+    reached: Reals, supporters: WritableIntegers, before: CsrRows, effects: CsrRows, costs: Reals,
     owners: Integers, operators: int, goals: Integers, guards: int,
 ) -> tuple[float, list[int]]:  # fmt: skip
     """Extract a relaxed plan (`Relaxation.plan`): cost and operators; guards from `guards`, whose
