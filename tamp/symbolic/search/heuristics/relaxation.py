@@ -271,7 +271,7 @@ class Relaxation:
         Facts are taken in the order of falling cost. One that an operator chosen already adds needs
         no supporter of its own, if that operator is cheaper than what the fact is needed for: the
         hand is free for the next body once this one is placed where it shall be, it need not be put
-        back first. A guard is not paid for whose facts an operator of the plan removes.
+        back first.
         """
         it = exploration.relaxed_state
         cost, plan = it.kernels.relaxed_plan(

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from tamp.symbolic.search.heuristics.loops.interface import Kernels
-from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Reals, WritableIntegers
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals
 from tamp.symbolic.search.successors import State
 
 
@@ -81,7 +81,7 @@ class RelaxedExploration:
     """
 
     costs: Reals
-    supporters: WritableIntegers
+    supporters: Integers
     relaxed_state: RelaxedState
     goals: list[int]
 

@@ -13,12 +13,13 @@ NODES, GROUPS, MEMBERS, PUSHED, EXPANDED, EVALUATED, AT, GOAL_NODE = 0, 1, 2, 3,
 PROGRESS = 8
 """Place of the number of states that were expanded when an estimate was a new low."""
 
-UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM, ENDURANCE = 9, 10, 11, 12, 13, 14
+UNTIL, LIMIT, BOOST, ACHIEVERS, RANDOM, ENDURANCE, FORGIVING = 9, 10, 11, 12, 13, 14, 15
 """Places of what is given: expanded states until a pause, at most, turns after progress, whether
-what reaches a landmark is preferred, the state of the generator that shuffles (0: none does), and
-expanded states since progress at most."""
+what reaches a landmark is preferred, the state of the generator that shuffles (0: none does),
+expanded states since progress at most, and whether estimates forgive the price of a guard whose
+facts the relaxed plan removes."""
 
-SIZES = 15
+SIZES = 16
 """From here on the sizes of the open lists, the usual and the preferred ones, then their turns."""
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.packed.basics import contains, has, heap_pop, heap_push
+from tamp.symbolic.search.packed.basics import FORGIVING, contains, has, heap_pop, heap_push
 
 
 def trigger(ints, reals, t, x, state):
@@ -226,7 +226,7 @@ def relaxed_plan(ints, reals, t, r, x):
                 )
                 size += 1
 
-    for i in range(r.first_remover, r.operators if paid else 0):
+    for i in range(r.first_remover, r.operators if paid and ints[FORGIVING] else 0):
         guard = ints[r.effects + ints[r.effects_starts + i]]
         removed = ints[r.before + ints[r.before_starts + i]]
         if ints[x.seen + guard] and reals[x.provided + removed] < math.inf:

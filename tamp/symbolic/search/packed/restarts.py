@@ -132,7 +132,9 @@ def by_agenda(search: SearchSpace, way: Way, random: int, states: int) -> Plan:
         part.initial, part.goal = state, goal
         if goal != s.goal:
             part.goal_absent = 0
-        found = PackedSearch(search, way.heuristics, math.inf, random, successors=part).plan(states)
+        found = PackedSearch(
+            search, way.heuristics, math.inf, random, successors=part, forgiving=True
+        ).plan(states)
         if found is None:
             raise Stalled
         for operator in found.operators:

@@ -64,6 +64,8 @@ class PackedSearch:
         achievers: Whether operators that reach a landmark for the first time are preferred too.
         successors: Another beginning and another goal with the same operators; by default the
             search's own.
+        forgiving: Whether estimates leave out the price of a guard whose facts the relaxed plan
+            removes for another reason.
     """
 
     def __init__(
@@ -74,6 +76,7 @@ class PackedSearch:
         random: int = 0,
         achievers: bool = False,
         successors: Successors | None = None,
+        forgiving: bool = False,
     ) -> None:
         from tamp.symbolic.search.packed import compiled
 
@@ -101,6 +104,7 @@ class PackedSearch:
         self._pace = max(1, min(LOOK_AROUND, MOST_ENTRIES // (1 + s.entries)))
         self._begin(kinds)
         self._ints[basics.RANDOM], self._ints[basics.ACHIEVERS] = random, achievers
+        self._ints[basics.FORGIVING] = forgiving
 
     def _begin(self, kinds: int) -> None:
         """Set the counters, and put the initial state into the usual list of each heuristic."""

@@ -6,13 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from tamp.symbolic.search.heuristics.loops.rows import (
-    CsrRows,
-    Integers,
-    Reals,
-    WritableIntegers,
-    csr_rows,
-)
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, csr_rows
 
 FOLDER = Path(__file__).resolve().parent
 SOURCES = ("rows", "kernels", "landmark_queue", "landmark_cuts")
@@ -24,11 +18,10 @@ class Kernels:
     """The inner loops, and what makes the lists that they take."""
 
     explore: Callable[
-        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool],
-        tuple[Reals, WritableIntegers],
+        [CsrRows, CsrRows, CsrRows, Reals, Integers, Reals, Integers, bool], tuple[Reals, Integers]
     ]
     relaxed_plan: Callable[
-        [Reals, WritableIntegers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
+        [Reals, Integers, CsrRows, CsrRows, Reals, Integers, int, Integers, int],
         tuple[float, Integers],
     ]
     landmark_cut: Callable[

@@ -7,14 +7,7 @@ from __future__ import annotations
 
 import math
 
-from tamp.symbolic.search.heuristics.loops.rows import (
-    CsrRows,
-    Integers,
-    Reals,
-    WritableIntegers,
-    count_up,
-    full,
-)
+from tamp.symbolic.search.heuristics.loops.rows import CsrRows, Integers, Reals, count_up, full
 
 
 def _before(fact: int, other: int, keys: Reals, ranks: Integers) -> bool:
@@ -119,12 +112,10 @@ def explore(
 
 
 def relaxed_plan(
-    reached: Reals, supporters: WritableIntegers, before: CsrRows, effects: CsrRows, costs: Reals,
+    reached: Reals, supporters: Integers, before: CsrRows, effects: CsrRows, costs: Reals,
     owners: Integers, operators: int, goals: Integers, guards: int,
 ) -> tuple[float, list[int]]:  # fmt: skip
-    """Extract a relaxed plan (`Relaxation.plan`): cost and operators; guards from `guards`, whose
-    supporters become those that the plan has.
-    """
+    """Extract a relaxed plan (`Relaxation.plan`): cost and operators; guards from `guards`."""
     facts = len(reached)
     keys, ranks = full(facts, 0.0), count_up(facts)
     for fact in range(facts):
@@ -132,8 +123,7 @@ def relaxed_plan(
     heap, places, seen = full(facts, 0), full(facts, -1), full(facts, False)
     bounds, provided = full(facts, math.inf), full(facts, math.inf)
     chosen = full(operators, -1.0)
-    paying = full(facts - guards, 0)
-    size, paid = 0, 0
+    size, total = 0, 0.0
     for goal in goals:
         if not seen[goal]:
             seen[goal] = True
@@ -144,8 +134,7 @@ def relaxed_plan(
         i = supporters[fact]
         if i < 0:
             if fact >= guards:
-                paying[paid] = fact
-                paid += 1
+                total += reached[fact]
             continue
         if provided[fact] < math.inf and provided[fact] <= bounds[fact]:  # by one already chosen
             continue
@@ -160,14 +149,6 @@ def relaxed_plan(
             if not seen[other]:
                 seen[other] = True
                 size = _push(other, heap, places, size, keys, ranks)
-    for i in range(len(owners), len(before.starts) - 1):  # a guard whose facts the plan removes
-        guard = effects.values[effects.starts[i]]
-        if seen[guard] and provided[before.values[before.starts[i]]] < math.inf:
-            supporters[guard] = i
-    total = 0.0
-    for k in range(paid):
-        if supporters[paying[k]] < 0:
-            total += reached[paying[k]]
     price, count = 0.0, 0
     plan = full(operators, 0)
     for i in range(operators):

@@ -7,12 +7,11 @@ arrays.
 
 from __future__ import annotations
 
-from collections.abc import MutableSequence, Sequence
+from collections.abc import Sequence
 from itertools import accumulate, chain
 from typing import NamedTuple, TypeVar
 
 Integers = Sequence[int]
-WritableIntegers = MutableSequence[int]
 Reals = Sequence[float]
 T = TypeVar("T")
 
