@@ -1,8 +1,9 @@
-"""The paper's networks in the paper's layout: published figure, ours, and the blind ceiling beside them.
+"""The paper's networks by the way they are trained: published figure, ours, and the blind ceiling beside them.
 
     tamp-learn generate on --layout paper --split train
     tamp-learn generate on --layout paper --split test --count 2000
     python -m benchmarks.paper_variants --relation on --variants mlp-bb gnn-bb
+    python -m benchmarks.paper_variants --relation on --layout household
 
 Seeds of one variant train as one ensemble; what the results have is not trained again.
 """
@@ -21,7 +22,8 @@ import tyro
 
 from benchmarks.common import RESULTS, table
 from benchmarks.groundings.journal import Journal
-from benchmarks.paper_ways import CHOICE, CLASSIFIERS, TURNED, VARIANTS, Variant
+from benchmarks.paper_ways import CHOICE, CLASSIFIERS, EDGES, TURNED, VARIANTS, Variant
+from grounding.arguments import data_file
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
 from grounding.paper.runtime import CHOICE as TRIES
@@ -70,13 +72,15 @@ class Options:
 
     Attributes:
         relation: on or inside.
+        layout: Of the scenes: as the paper's, or our harder ones, which have no edge negatives.
         variants: Models, of which all ways are taken, or whole names of rows; all by default.
         seeds: Trainings of each.
         iterations: Of the classifier, and then of the generator.
         samples: Training scenes; all by default.
         scenes: Test scenes at most.
         draws: Poses a scene.
-        data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz.
+        data: The folder with RELATION_paper_train.npz and RELATION_paper_test.npz, or RELATION_train.npz and
+            RELATION_test.npz of the household layout.
         weights: The folder of weights; the encoder is RELATION_encoder.safetensors in it, or else that of the
             RELATION_mlp-pc that ships.
         out: The results.
@@ -84,6 +88,7 @@ class Options:
     """
 
     relation: Literal["on", "inside"] = "on"
+    layout: Literal["paper", "household"] = "paper"
     variants: tuple[str, ...] = ()
     seeds: int = 5
     iterations: int = 30_000
@@ -99,19 +104,15 @@ class Options:
 def main(options: Options) -> None:
     """Train and judge what is missing, print the table."""
     journal = Journal(options.out, Case)
-    wanted = [
-        variant for variant in VARIANTS if not options.variants or {variant.name, variant.model} & set(options.variants)
-    ]
-    sets = {
-        name: read_dataset(options.data / name) for name in {one.set_name(options.relation, "train") for one in wanted}
-    }
-    test = read_dataset(options.data / f"{options.relation}_paper_test.npz")
+    wanted = _wanted(options)
+    sets = {name: read_dataset(options.data / name) for name in {_set_name(options, one) for one in wanted}}
+    test = read_dataset(options.data / data_file(options.relation, "test", options.layout).name)
     if options.ray is not None:
         for name, data in sets.items():
-            some = [one for one in wanted if one.set_name(options.relation, "train") == name]
+            some = [one for one in wanted if _set_name(options, one) == name]
             _train_on_ray(options, some, journal, data, test)
     for variant in wanted:
-        train_data = sets[variant.set_name(options.relation, "train")]
+        train_data = sets[_set_name(options, variant)]
         for case in journal.missing(_cases(options, variant, train_data, test)):
             weights = _weights(options, variant, case, train_data)
             started = time.process_time()
@@ -122,10 +123,29 @@ def main(options: Options) -> None:
     lines = [
         line
         for variant in wanted
-        for line in journal.found(_cases(options, variant, sets[variant.set_name(options.relation, "train")], test))
+        for line in journal.found(_cases(options, variant, sets[_set_name(options, variant)], test))
     ]
     if lines:
-        table([*_rows(options.relation, lines)], f"{options.relation}, the paper's layout")
+        table(_rows(options, lines), f"{options.relation}, layout {options.layout}")
+
+
+def _wanted(options: Options) -> list[Variant]:
+    """Choose the rows that are named, all by default, of those that the layout has.
+
+    Raises:
+        InputError: A name of none.
+    """
+    possible = [one for one in VARIANTS if options.layout == "paper" or EDGES not in one.departures]
+    known = [*dict.fromkeys(one.model for one in possible), *(one.name for one in possible)]
+    for name in options.variants:
+        if name not in known:
+            raise InputError(f"layout '{options.layout}' has no variant '{name}'", found=name, choices=known)
+    named = {*options.variants}
+    return [one for one in possible if not named or {one.name, one.model} & named]
+
+
+def _set_name(options: Options, variant: Variant) -> str:
+    return variant.set_name(options.relation, "train", options.layout)
 
 
 def _cases(options: Options, variant: Variant, train_data: Dataset, test: Dataset) -> list[Case]:
@@ -183,7 +203,7 @@ def _train_on_ray(options: Options, wanted: Sequence[Variant], journal: Journal,
 
     plain = [one.trained for one in wanted if [*journal.missing(_cases(options, one, data, test))]]
     samples = options.samples or len(data)
-    file = options.data / wanted[0].set_name(options.relation, "train")
+    file = options.data / _set_name(options, wanted[0])
     for clouds in (False, True):
         some = [one for one in dict.fromkeys(plain) if one.model.endswith("pc") == clouds]
         trainings = [
@@ -212,17 +232,18 @@ def _trained_already(options: Options, variant: Variant, case: Case, seeds: Sequ
 
 
 def _path(options: Options, variant: Variant, samples: int, seed: int) -> Path:
-    words = [options.relation, variant.model, variant.scheme, *variant.departures]
+    layout = [] if options.layout == "paper" else [options.layout]
+    words = [options.relation, *layout, variant.model, variant.scheme, *variant.departures]
     return options.weights / f"{'_'.join(words)}_{samples}_{options.iterations}_{seed}.safetensors"
 
 
-def _rows(relation: str, lines: Sequence[Mapping[str, Any]]) -> list[dict[str, object]]:
+def _rows(options: Options, lines: Sequence[Mapping[str, Any]]) -> list[dict[str, object]]:
     """One row a variant: means over the seeds, their least and largest beside the first one."""
     rows: list[dict[str, object]] = []
     for name in dict.fromkeys(line["config"]["variant"] for line in lines):
         same = [line for line in lines if line["config"]["variant"] == name]
         here = [line["published"] for line in same]
-        published = PUBLISHED[relation].get(name.split()[0]) if "+" not in name else None
+        published = PUBLISHED[options.relation].get(name.split()[0]) if "+" not in name else None
         rows.append(
             {
                 "variant": name,

@@ -11,8 +11,19 @@ import pytest
 
 from benchmarks.groundings import __main__ as figures
 from benchmarks.groundings.__main__ import Options, main
-from benchmarks.groundings.case import FAILING, FIGURES, Case, Plan, cases
+from benchmarks.groundings.case import (
+    DEPARTED,
+    FAILING,
+    FIGURES,
+    NAMES,
+    PUBLISHED,
+    Case,
+    Plan,
+    cases,
+)
 from benchmarks.groundings.journal import Journal
+from benchmarks.groundings.library import Library
+from benchmarks.groundings.pictures import draw
 from benchmarks.groundings.summary import failures, share
 from grounding.generate import Job, generate
 from grounding.registry import MODELS, PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
@@ -22,7 +33,7 @@ from tests.needs import NEEDS_TORCH
 pytestmark = pytest.mark.timeout(300)
 
 WHOLE = 24
-NAMES = ("uniform", "uniform+mlp", "mlp-bb", "mlp-bb-classifier", "transfer")
+FEW = ("uniform", "uniform+mlp", "mlp-bb", "mlp-bb-classifier", "transfer")
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +54,7 @@ def options(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Options:
     places = {"data": folder, "weights": folder / "weights", "pictures": folder / "pictures"}
     out = folder / "results.jsonl"
     return Options(
-        "all", relations=("on",), models=NAMES, sizes=(10, 24), quick=True, out=out, **places
+        "all", relations=("on",), models=FEW, sizes=(10, 24), quick=True, out=out, **places
     )
 
 
@@ -141,6 +152,63 @@ def test_the_cases_of_the_figures() -> None:
         == replace(borrowed, model=SHARED_WEIGHTS["uniform+gnn"]).weights
         == "on-gnn-bb-100-2"
     )
+
+
+def test_figures_of_the_papers_layout_have_its_departures_too() -> None:
+    plan = Plan(("on",), NAMES, (10, 100), seeds=1, scenes=5, cloud_scenes=5, draws=9)
+    for figure in FIGURES:
+        assert {*DEPARTED} <= {case.model for case in cases(figure, plan)}
+        draws = {case.draws for case in cases(figure, plan)}
+        assert draws == ({9} if figure in {"fig5", "fig6"} else {1})
+
+
+@pytest.mark.parametrize(
+    ("relation", "model", "network", "scheme", "departures"),
+    [
+        ("on", "uniform+gnn", "gnn-bb", "discriminator", set[str]()),
+        ("inside", "mlp-pc", "mlp-pc", "both", set[str]()),
+        ("on", "mlp-bb-classifier", "mlp-bb", "classifier", set[str]()),
+        ("on", "gnn-pc-middle", "gnn-pc", "discriminator", {"middle-code"}),
+        ("on", "gnn-bb-departed", "gnn-bb", "discriminator", {"edge-negatives", "own-choice"}),
+        ("inside", "gnn-bb-departed", "gnn-bb", "both", {"attention", "turned-proposals"}),
+    ],
+)
+def test_how_a_network_of_the_figures_is_trained(
+    relation: str, model: str, network: str, scheme: str, departures: set[str]
+) -> None:
+    variant = Case("success", relation, model, 10, 0, 5).variant
+    assert (variant.model, variant.scheme) == (network, scheme)
+    assert departures <= {*variant.departures}
+    assert bool(departures) == bool(variant.departures)
+
+
+def test_a_case_of_one_draw_is_recorded_as_before_there_were_several() -> None:
+    one = Case("success", "on", "flow", 10, 0, 5)
+    assert "draws" not in one.config
+    assert replace(one, draws=9).config == {**one.config, "draws": 9}
+
+
+def test_data_of_the_papers_layout_that_are_missing_are_named(tmp_path: Path) -> None:
+    library = Library(tmp_path, tmp_path, layout="paper")
+    with pytest.raises(InputError, match=r"on_paper_edges_train\.npz.*no such data set") as raised:
+        library.scenes("on", "train", edges=True)
+    assert "tamp-learn generate on --layout paper --edges --split train" in str(raised.value)
+
+
+def test_the_papers_figures_stand_beside_ours(tmp_path: Path) -> None:
+    found = {
+        "scenes": 10, "published": 0.4, "settled": 0.2, "feasible": 0.9,
+        "blind_published": 0.8, "blind_mca": 0.9, "mca": 0.5,
+    }  # fmt: skip
+    lines = [
+        {"seed": 0, "config": Case("success", "on", "mlp-pc", size, 0, 10, 9).config, **found}
+        for size in (100, 20_000)
+    ]
+    path = draw("fig5", lines, tmp_path, "paper")
+    assert path.name == "fig5_groundings_paper.png"
+    assert path.stat().st_size > 5000
+    assert path.read_bytes() != draw("fig5", lines, tmp_path).read_bytes()
+    assert {model for _, model in PUBLISHED} <= {*NAMES}
 
 
 def test_means_over_seeds_and_the_interval_of_one_seeds_scenes() -> None:

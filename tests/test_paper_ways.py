@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
-from benchmarks.paper_ways import CLASSIFIERS, VARIANTS, Variant
+from benchmarks.paper_variants import Options, main
+from benchmarks.paper_ways import BEST, CLASSIFIERS, EDGES, VARIANTS, Variant
+from tamp.errors import InputError
 from tests.needs import NEEDS_TORCH
 
 
@@ -36,3 +40,24 @@ def test_what_is_trained_for_a_row(
     assert variant.trained == Variant("gnn-bb", "discriminator", trained)
     assert variant.set_name("on", "train") == train_set
     assert variant.set_name("on", "test") == "on_paper_test.npz"
+
+
+def test_the_household_layout_has_names_of_its_own() -> None:
+    assert Variant("mlp-bb", "both").set_name("inside", "train", "household") == "inside_train.npz"
+
+
+def test_what_passes_the_ceiling_is_among_the_rows() -> None:
+    assert {*BEST.values()} <= {*VARIANTS}
+
+
+@pytest.mark.parametrize(
+    ("layout", "name", "said"),
+    [
+        ("paper", "mlp-bb discriminatr", "Choices: mlp-bb, gnn-bb, mlp-pc"),
+        ("household", BEST["on"].name, "layout 'household' has no variant"),
+    ],
+)
+def test_a_row_that_is_none_is_said(layout: str, name: str, said: str, tmp_path: Path) -> None:
+    assert layout == "paper" or EDGES in BEST["on"].departures
+    with pytest.raises(InputError, match=said):
+        main(Options(layout=layout, variants=(name,), out=tmp_path / "r.jsonl"))  # type: ignore[arg-type]

@@ -2,6 +2,7 @@
 
 python -m benchmarks.groundings all --data data --weights weights/figures
 python -m benchmarks.groundings fig5 --quick
+python -m benchmarks.groundings all --layout paper
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Literal
 import tyro
 
 from benchmarks.common import RESULTS, ROOT, table
-from benchmarks.groundings.case import FAILING, FIGURES, SIZES, Case, Plan, cases
+from benchmarks.groundings.case import FAILING, FIGURES, NAMES, SIZES, Case, Plan, cases
 from benchmarks.groundings.journal import Journal
 from benchmarks.groundings.library import Library
 from benchmarks.groundings.measure import MEASURES
@@ -33,26 +34,31 @@ class Options:
     Attributes:
         figure: fig4, fig5, fig6, fig7, or all.
         relations: on, inside or both.
-        models: At most these; those that a figure is not about are left out.
+        layout: Of the scenes: our own, or as the paper's.
+        models: At most these; those that a figure is not about are left out. By default all of the layout household.
         sizes: Training scenes of figure 5, increasing; the last one is what the other figures are about.
         seeds: Trainings on the last size.
         scenes: Test scenes of a measurement of success; of accuracy twice as many, of times a tenth.
         cloud_scenes: The same of models on clouds.
+        draws: Poses a scene, of success.
         train: Train what is missing; --no-train leaves it out.
         quick: The shape in minutes: few scenes, made if need be, little training, all in a folder of its own.
-        data: The folder with RELATION_train.npz and RELATION_test.npz; data by default.
-        weights: The folder of trained groundings; weights/figures by default.
-        out: The results; benchmarks/results/groundings.jsonl by default.
+        data: The folder with RELATION_train.npz and RELATION_test.npz, or RELATION_paper_train.npz and its like; data
+            by default.
+        weights: The folder of trained groundings; weights/figures, or weights/figures_paper, by default.
+        out: The results; benchmarks/results/groundings.jsonl, or groundings_paper.jsonl, by default.
         pictures: Their folder; docs/pictures by default.
     """
 
     figure: tyro.conf.Positional[Literal["fig4", "fig5", "fig6", "fig7", "all"]]
     relations: tuple[Literal["on", "inside"], ...] = ("on", "inside")
+    layout: Literal["household", "paper"] = "household"
     models: tuple[str, ...] = FAILING
     sizes: tuple[int, ...] = SIZES
     seeds: int = 5
     scenes: int = 300
     cloud_scenes: int = 100
+    draws: int = 1
     train: bool = True
     quick: bool = False
     data: Path | None = None
@@ -77,27 +83,34 @@ def main(options: Options) -> None:
             print(f"{figure}: without weights, left out: {', '.join(left_out)}")
         if found:
             table(rows(figure, found), figure)
-            print(f"{draw(figure, found, folder)} written")
+            print(f"{draw(figure, found, folder, options.layout)} written")
 
 
 def _arranged(options: Options) -> tuple[Plan, Library, Path, Path]:
     """How much, with what, and where to."""
     for model in options.models:
-        if model not in FAILING:
-            raise InputError(f"unknown model '{model}'", found=model, choices=FAILING)
+        if model not in NAMES:
+            raise InputError(f"unknown model '{model}'", found=model, choices=NAMES)
+    paper = "" if options.layout == "household" else f"_{options.layout}"
     data = options.data or (QUICK if options.quick else Path("data"))
-    weights = options.weights or (QUICK if options.quick else Path("weights/figures"))
-    out = options.out or (QUICK / "groundings.jsonl" if options.quick else RESULTS / "groundings.jsonl")
+    weights = options.weights or (QUICK if options.quick else Path(f"weights/figures{paper}"))
+    out = options.out or (QUICK if options.quick else RESULTS) / f"groundings{paper}.jsonl"
     folder = options.pictures or (QUICK if options.quick else ROOT / "docs/pictures")
     if not options.quick:
         plan = Plan(
-            options.relations, options.models, options.sizes, options.seeds, options.scenes, options.cloud_scenes
+            options.relations,
+            options.models,
+            options.sizes,
+            options.seeds,
+            options.scenes,
+            options.cloud_scenes,
+            options.draws,
         )
-        return plan, Library(data, weights, options.train, say=_say), out, folder
+        return plan, Library(data, weights, options.train, say=_say, layout=options.layout), out, folder
     sizes = (*(size for size in options.sizes if size in QUICK_SIZES), QUICK_TRAIN)
-    plan = Plan(options.relations, options.models, sizes, 1, QUICK_TEST, QUICK_TEST // 4)
+    plan = Plan(options.relations, options.models, sizes, 1, QUICK_TEST, QUICK_TEST // 4, options.draws)
     generate = (QUICK_TRAIN, QUICK_TEST)
-    return plan, Library(data, weights, options.train, QUICK_ITERATIONS, generate, _say), out, folder
+    return plan, Library(data, weights, options.train, QUICK_ITERATIONS, generate, _say, options.layout), out, folder
 
 
 QUICK_TRAIN, QUICK_TEST, QUICK_ITERATIONS = 200, 60, 300
@@ -111,12 +124,13 @@ def _measure(journal: Journal, wanted: list[Case], library: Library) -> list[str
     """Add what is missing; the names of those whose weights are missing and are not trained."""
     left_out: list[str] = []
     missing = journal.missing(wanted)
+    library.train_networks(missing)
     for done, case in enumerate(missing, start=1):
         model = library.model(case)
         if model is None:
             left_out.append(f"{case.relation} {case.model} {case.samples} {case.seed}")
             continue
-        found = MEASURES[case.measure](model, library, case.relation, case.scenes)
+        found = MEASURES[case.measure](model, library, case)
         journal.add(case, **found)
         _say(f"{done} of {len(missing)}: {case.measure} {case.relation} {case.model} {case.samples} {case.seed}")
     return left_out

@@ -6,6 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from benchmarks.paper_ways import BEST, MIDDLE, Variant
+from grounding.paper.trainer_options import HEADLINE_SCHEME
 from grounding.registry import PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
 
 SIZES = (10, 50, 100, 500, 1_000, 5_000, 20_000)
@@ -23,6 +25,22 @@ GENERATORS = (
 FAILING = (*GENERATORS[:9], *TRAINING_VARIANTS, *GENERATORS[9:])
 """Of figure 6: also the networks taught by the discriminator or the classifier alone."""
 
+DEPARTED = ("mlp-pc-middle", "gnn-pc-middle", "gnn-bb-departed")
+"""Of all figures in the paper's layout: its networks on codes about the middle, and the one that passes the blind
+ceiling.
+"""
+
+NAMES = (*FAILING, *DEPARTED)
+"""All that can be measured, in the order of the tables."""
+
+PUBLISHED: Mapping[tuple[str, str], Mapping[int, float]] = {
+    ("on", "mlp-pc"): {100: 0.65 * 0.77, 500: 0.99 * 0.77, 20_000: 0.77},
+    ("on", "uniform+mlp"): {20_000: 0.11},
+    ("inside", "mlp-pc"): {10: 0.76 * 0.64, 20_000: 0.64},
+    ("inside", "uniform+gnn"): {20_000: 0.25},
+}
+"""MCA by training scenes, of relation and model: all that the paper's section V says in numbers."""
+
 FIGURES = ("fig4", "fig5", "fig6", "fig7")
 
 
@@ -37,6 +55,7 @@ class Case:
         samples: Scenes that it was trained on; 0 of a model that is not trained.
         seed: Of its training; all are judged on the same test scenes.
         scenes: How many of these.
+        draws: Poses a scene.
     """
 
     measure: str
@@ -45,16 +64,38 @@ class Case:
     samples: int
     seed: int
     scenes: int
+    draws: int = 1
 
     @property
     def config(self) -> dict[str, Any]:
-        """All that tells it from another one, for the record."""
-        return asdict(self)
+        """All that tells it from another one, for the record; draws where there are several."""
+        return {name: value for name, value in asdict(self).items() if name != "draws" or value != 1}
 
     @property
     def weights(self) -> str:
         """The name of its weights, of those of the model that it borrows them from."""
-        return f"{self.relation}-{SHARED_WEIGHTS.get(self.model, self.model)}-{self.samples}-{self.seed}"
+        return f"{self.relation}-{self.trained}-{self.samples}-{self.seed}"
+
+    @property
+    def trained(self) -> str:
+        """The name of what is trained for it."""
+        return SHARED_WEIGHTS.get(self.model, self.model)
+
+    @property
+    def variant(self) -> Variant:
+        """How it is trained, where it is a network of the paper's."""
+        name = self.trained
+        if name == "gnn-bb-departed":
+            return BEST[self.relation]
+        if name in DEPARTED:
+            return Variant(name.removesuffix("-middle"), self._scheme, MIDDLE)
+        if name in TRAINING_VARIANTS:
+            return Variant(TRAINING_VARIANTS[name], name.rpartition("-")[2])
+        return Variant(name, self._scheme)
+
+    @property
+    def _scheme(self) -> str:
+        return HEADLINE_SCHEME.get(self.relation, "both")
 
 
 @dataclass(frozen=True)
@@ -68,6 +109,7 @@ class Plan:
         seeds: Trainings on the whole set; one on fewer scenes.
         scenes: Test scenes of a measurement of success; of accuracy twice as many, of times a tenth.
         cloud_scenes: The same of models on clouds, which take 0.1 s for each pose.
+        draws: Poses a scene that success is measured by.
     """
 
     relations: Sequence[str]
@@ -76,6 +118,7 @@ class Plan:
     seeds: int
     scenes: int
     cloud_scenes: int
+    draws: int = 1
 
 
 def cases(figure: str, plan: Plan) -> list[Case]:
@@ -88,11 +131,16 @@ def cases(figure: str, plan: Plan) -> list[Case]:
     measure, names = _MEASURED[figure]
     return [
         Case(
-            measure, relation, model, *((0, 0) if model in PARAMETER_FREE else training), _scenes(measure, model, plan)
+            measure,
+            relation,
+            model,
+            *((0, 0) if model in PARAMETER_FREE else training),
+            _scenes(measure, model, plan),
+            plan.draws if measure == "success" else 1,
         )
         for training in _trainings(figure, plan)
         for relation in plan.relations
-        for model in names
+        for model in (*names, *DEPARTED)
         if model in plan.models
     ]
 
@@ -114,5 +162,10 @@ def _trainings(figure: str, plan: Plan) -> list[tuple[int, int]]:
 
 
 def _scenes(measure: str, model: str, plan: Plan) -> int:
-    scenes = plan.cloud_scenes if model.endswith("-pc") else plan.scenes
+    scenes = plan.cloud_scenes if on_clouds(model) else plan.scenes
     return {"accuracy": 2 * scenes, "success": scenes, "times": max(1, scenes // 10)}[measure]
+
+
+def on_clouds(model: str) -> bool:
+    """Check whether a model sees clouds."""
+    return "-pc" in model

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.groundings.case import GENERATORS
+from benchmarks.groundings.case import DEPARTED, GENERATORS, PUBLISHED, on_clouds
 from benchmarks.groundings.measure import BATCHES
-from benchmarks.groundings.summary import JUDGES, Share, failures, feasible, grouped, share
+from benchmarks.groundings.summary import JUDGES, PUBLISHED_ORACLE, Share, blind, failures, feasible, grouped, share
 from grounding.registry import TRAINING_VARIANTS
 from tamp.benchmark.picture import COLOURS, STYLES
 from tamp.errors import InputError
@@ -16,7 +16,11 @@ from tamp.system.distribution import install_command
 
 Line = Mapping[str, Any]
 
-TITLES = {"mca": "MCA, the paper's oracle", "settled": "settled in physics"}
+TITLES = {
+    "mca": "MCA, the paper's oracle",
+    "settled": "settled in physics",
+    PUBLISHED_ORACLE: "the published oracle, 3 cm",
+}
 
 SHADES = {
     "holds": "#228833",
@@ -32,13 +36,14 @@ SHADES = {
 """Of a bar of figure 6, from success to what is farthest from it."""
 
 
-def draw(figure: str, lines: Sequence[Line], folder: Path) -> Path:
-    """Write FIGURE_groundings.png.
+def draw(figure: str, lines: Sequence[Line], folder: Path, layout: str = "household") -> Path:
+    """Write FIGURE_groundings.png, or FIGURE_groundings_paper.png.
 
     Args:
         figure: One of FIGURES.
         lines: Its measurements, at least one.
         folder: Where; it is made.
+        layout: Of the scenes. In the paper's the figures that its text tells stand beside ours.
 
     Raises:
         InputError: matplotlib is missing.
@@ -52,10 +57,14 @@ def draw(figure: str, lines: Sequence[Line], folder: Path) -> Path:
 
     relations = list(dict.fromkeys(relation for relation, _ in grouped(lines)))
     sheet = Figure(layout="constrained")
-    _DRAWN[figure](sheet, lines, relations)
+    if figure == "fig5" and layout == "paper":
+        _success(sheet, lines, relations, (PUBLISHED_ORACLE, "settled"))
+        _published(sheet, relations)
+    else:
+        _DRAWN[figure](sheet, lines, relations)
     sheet.suptitle(_note(lines), fontsize=9)
     folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{figure}_groundings.png"
+    path = folder / f"{figure}_groundings{'' if layout == 'household' else f'_{layout}'}.png"
     sheet.savefig(path, dpi=100)
     return path
 
@@ -79,10 +88,10 @@ def _accuracy(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
         axes.set_title(f"{relation}: training (pale) and test scenes")
 
 
-def _success(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
+def _success(sheet: Any, lines: Sequence[Line], relations: list[str], judges: Sequence[str] = JUDGES) -> None:
     """Figure 5."""
-    panels = _panels(sheet, len(JUDGES), len(relations), (5.2, 3.6))
-    for judge, row in zip(JUDGES, panels, strict=True):
+    panels = _panels(sheet, len(judges), len(relations), (5.2, 3.6))
+    for judge, row in zip(judges, panels, strict=True):
         for axes, relation in zip(row, relations, strict=True):
             _curves(axes, lines, relation, judge)
             axes.set_title(f"{relation}: {TITLES[judge]}")
@@ -92,9 +101,20 @@ def _success(sheet: Any, lines: Sequence[Line], relations: list[str]) -> None:
     _legend(sheet, [axes for row in panels for axes in row], 6)
 
 
+def _published(sheet: Any, relations: list[str]) -> None:
+    """Put the paper's figures among ours, which are in the first row of panels, as diamonds."""
+    for axes, relation in zip(sheet.axes, relations, strict=False):
+        for (name, model), figures in PUBLISHED.items():
+            if name == relation:
+                axes.plot([*figures], [*figures.values()], "D", mfc="none", markersize=7, color=_style(model)["color"])
+
+
 def _curves(axes: Any, lines: Sequence[Line], relation: str, judge: str) -> None:
     groups = {model: sizes for (name, model), sizes in grouped(lines).items() if name == relation}
     axes.axhline(feasible(lines, relation), color="black", linewidth=0.8, linestyle=":", label="feasible")
+    ceiling = blind(lines, relation, judge)
+    if ceiling is not None:
+        axes.axhline(ceiling, color="black", linewidth=0.8, linestyle="--", label="blind ceiling")
     for model, sizes in groups.items():
         places, found = [*sizes], [share(same, judge) for same in sizes.values()]
         if places == [0]:  # not trained
@@ -183,7 +203,7 @@ def _legend(sheet: Any, panels: Sequence[Any], columns: int) -> None:
 
 def _style(model: str) -> dict[str, str]:
     """The same model looks the same everywhere."""
-    index = [*reversed(GENERATORS), *TRAINING_VARIANTS].index(model)
+    index = [*reversed(GENERATORS), *TRAINING_VARIANTS, *DEPARTED].index(model)
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": STYLES[index // len(COLOURS)]}
 
 
@@ -200,7 +220,7 @@ def _note(lines: Sequence[Line]) -> str:
     """On how many scenes and trainings it rests."""
     counts = {cloud: set[int]() for cloud in (False, True)}
     for line in lines:
-        counts[line["config"]["model"].endswith("-pc")].add(line["config"]["scenes"])
+        counts[on_clouds(line["config"]["model"])].add(line["config"]["scenes"])
     shown = {cloud: ", ".join(str(count) for count in sorted(found)) for cloud, found in counts.items() if found}
     clouds = f" ({shown[True]} for models on clouds)" if False in shown and True in shown else ""
     seeds = 1 + max(line["config"]["seed"] for line in lines)

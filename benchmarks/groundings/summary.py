@@ -7,13 +7,18 @@ from dataclasses import dataclass
 from typing import Any
 
 from benchmarks.common import wilson
-from benchmarks.groundings.case import FAILING
+from benchmarks.groundings.case import NAMES
 from benchmarks.groundings.measure import BATCHES
 from grounding.registry import RELATIONS
 
 Line = Mapping[str, Any]
 
 JUDGES = ("mca", "settled")
+"""By which poses are judged."""
+
+PUBLISHED_ORACLE = "published"
+"""By which they are judged beside the paper's figures: the published code's, at 3 cm."""
+
 FAILURES = {"mca": "mca_failures", "settled": "failures"}
 """A judge's field of failures."""
 
@@ -46,7 +51,7 @@ def wilson_of(mean: float, count: int) -> tuple[float, float]:
 
 
 def grouped(lines: Sequence[Line]) -> dict[tuple[str, str], dict[int, list[Line]]]:
-    """Relation and model to training scenes to the seeds' lines, in the order of FAILING, sizes increasing."""
+    """Relation and model to training scenes to the seeds' lines, in the order of NAMES, sizes increasing."""
     groups: dict[tuple[str, str], dict[int, list[Line]]] = {}
     for line in sorted(lines, key=_place):
         config = line["config"]
@@ -65,6 +70,13 @@ def feasible(lines: Sequence[Line], relation: str) -> float:
     return max(line["feasible"] for line in lines if line["config"]["relation"] == relation)
 
 
+def blind(lines: Sequence[Line], relation: str, judge: str) -> float | None:
+    """The blind ceiling by an oracle on boxes, None where it was not measured."""
+    field = f"blind_{judge}"
+    found = [line[field] for line in lines if line["config"]["relation"] == relation and field in line]
+    return max(found, default=None)
+
+
 def rows(figure: str, lines: Sequence[Line]) -> list[dict[str, object]]:
     """A figure's table, at least one row."""
     return [
@@ -81,7 +93,10 @@ def _accuracy(lines: Sequence[Line]) -> dict[str, object]:
 
 
 def _success(lines: Sequence[Line]) -> dict[str, object]:
-    cells = {name: cell for judge in JUDGES for name, cell in _cells(judge, lines, "scenes").items()}
+    judges = [judge for judge in (*JUDGES, PUBLISHED_ORACLE) if judge in lines[0]]
+    cells = {name: cell for judge in judges for name, cell in _cells(judge, lines, "scenes").items()}
+    if "blind_mca" in lines[0]:
+        cells["blind"] = f"{lines[0]['blind_mca']:.3f} / {lines[0]['blind_published']:.3f}"
     return cells | {"feasible": f"{lines[0]['feasible']:.3f}", "scenes": lines[0]["scenes"]}
 
 
@@ -108,7 +123,7 @@ def _cells(field: str, lines: Sequence[Line], scenes: str) -> dict[str, object]:
 
 def _place(line: Line) -> tuple[int, int, int, int]:
     config = line["config"]
-    return RELATIONS.index(config["relation"]), FAILING.index(config["model"]), config["samples"], config["seed"]
+    return RELATIONS.index(config["relation"]), NAMES.index(config["model"]), config["samples"], config["seed"]
 
 
 _CELLS = {"fig4": _accuracy, "fig5": _success, "fig6": _failing, "fig7": _times}
