@@ -62,7 +62,7 @@ def draw(figure: str, lines: Sequence[Line], folder: Path, layout: str = "househ
         _published(sheet, relations)
     else:
         _DRAWN[figure](sheet, lines, relations)
-    sheet.suptitle(_note(lines), fontsize=9)
+    sheet.suptitle(_note(lines), fontsize=9 if len(relations) > 1 else 7)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{figure}_groundings{'' if layout == 'household' else f'_{layout}'}.png"
     sheet.savefig(path, dpi=100)
@@ -98,7 +98,7 @@ def _success(sheet: Any, lines: Sequence[Line], relations: list[str], judges: Se
             axes.set_ylim(-0.02, 1.02)
     for axes in panels[-1]:
         axes.set_xlabel("training scenes")
-    _legend(sheet, [axes for row in panels for axes in row], 6)
+    _legend(sheet, [axes for row in panels for axes in row], 3 * len(relations))
 
 
 def _published(sheet: Any, relations: list[str]) -> None:
