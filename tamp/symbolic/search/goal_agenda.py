@@ -128,7 +128,9 @@ def _achievers(s: Successors, sources: Mapping[int, State] | None = None) -> dic
     by a conditional effect.
     """
     goals: dict[int, list[int]] = {}
-    for goal, facts in sources.items() if sources else ((one, 1 << one) for one in bits(s.goal)):
+    if sources is None:
+        sources = {goal: 1 << goal for goal in bits(s.goal)}
+    for goal, facts in sources.items():
         for fact in bits(facts):
             goals.setdefault(fact, []).append(goal)
     wanted = sum(1 << fact for fact in goals)

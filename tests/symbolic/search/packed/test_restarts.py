@@ -135,8 +135,8 @@ def test_goals_that_guards_order_come_in_parts_from_the_start() -> None:
     assert plan.cost == 2.0 and run.expanded == 2
 
 
-def test_an_order_by_guards_into_a_dead_end_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Deep uses up the key that near needs, too; near gives it back."""
+def test_an_order_by_guards_into_a_dead_end_is_left() -> None:
+    """Deep uses up the key that near needs, too."""
     guard = Guard(facts("front"), ("squeezed",))
     operators = [
         operator("near", "key", "front"), operator("deep", "key", "back", deleted="key", guards=(guard,)),
