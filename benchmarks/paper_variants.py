@@ -72,7 +72,6 @@ class Options:
 
     Attributes:
         relation: on or inside.
-        layout: Of the scenes: as the paper's, or our harder ones, which have no edge negatives.
         variants: Models, of which all ways are taken, or whole names of rows; all by default.
         seeds: Trainings of each.
         iterations: Of the classifier, and then of the generator.
@@ -85,10 +84,10 @@ class Options:
             RELATION_mlp-pc that ships.
         out: The results.
         ray: Train on a Ray cluster: its address, auto, or local; one variant a core.
+        layout: Of the scenes: as the paper's, or our harder ones, which have no edge negatives.
     """
 
     relation: Literal["on", "inside"] = "on"
-    layout: Literal["paper", "household"] = "paper"
     variants: tuple[str, ...] = ()
     seeds: int = 5
     iterations: int = 30_000
@@ -99,6 +98,7 @@ class Options:
     weights: Path = Path("weights/paper")
     out: Path = RESULTS / "paper_variants.jsonl"
     ray: str | None = None
+    layout: Literal["paper", "household"] = "paper"
 
 
 def main(options: Options) -> None:

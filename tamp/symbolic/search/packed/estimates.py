@@ -226,17 +226,22 @@ def relaxed_plan(ints, reals, t, r, x):
                 )
                 size += 1
 
-    for i in range(r.first_remover, r.operators if paid and ints[FORGIVING] else 0):
-        guard = ints[r.effects + ints[r.effects_starts + i]]
-        removed = ints[r.before + ints[r.before_starts + i]]
-        if ints[x.seen + guard] and reals[x.provided + removed] < math.inf:
+    total = to_pay(ints, reals, r, x, paid)
+    price, count = gathered(ints, reals, t, x)
+    return total + price, count
+
+
+def to_pay(ints, reals, r, x, paid):
+    """Sum the prices of the guards paid for; some are forgiven, which the relaxed plan removes."""
+    for i in range(r.first_remover, r.operators if ints[FORGIVING] else 0):
+        guard, need = ints[r.effects + ints[r.effects_starts + i]], r.before_starts + i
+        if ints[x.seen + guard] and reals[x.provided + ints[r.before + ints[need]]] < math.inf:
             ints[x.supporters + guard] = i
     total = 0.0
     for k in range(paid):
         if ints[x.supporters + ints[x.paying + k]] < 0:
             total += reals[x.reached + ints[x.paying + k]]
-    price, count = gathered(ints, reals, t, x)
-    return total + price, count
+    return total
 
 
 def gathered(ints, reals, t, x):
