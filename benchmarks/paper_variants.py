@@ -22,7 +22,7 @@ import tyro
 
 from benchmarks.common import RESULTS, table
 from benchmarks.groundings.journal import Journal
-from benchmarks.paper_ways import CHOICE, CLASSIFIERS, EDGES, TURNED, VARIANTS, Variant
+from benchmarks.paper_ways import CHOICE, CLASSIFIERS, EDGES, PUBLISHED, TURNED, VARIANTS, WHOLE, Variant
 from grounding.arguments import data_file
 from grounding.dataset import Dataset, read_dataset
 from grounding.evaluate import evaluate
@@ -32,9 +32,6 @@ from grounding.registry import SHIPPED
 from grounding.train import encoder_of
 from grounding.weights import Weights, read_weights, write_weights
 from tamp.errors import InputError
-
-PUBLISHED: Mapping[str, Mapping[str, float]] = {"on": {"mlp-pc": 0.77}, "inside": {"mlp-pc": 0.64}}
-"""MCA of the best network for each relation (the paper, section V, Q2); "the others similar"."""
 
 
 @dataclass(frozen=True)
@@ -243,7 +240,8 @@ def _rows(options: Options, lines: Sequence[Mapping[str, Any]]) -> list[dict[str
     for name in dict.fromkeys(line["config"]["variant"] for line in lines):
         same = [line for line in lines if line["config"]["variant"] == name]
         here = [line["published"] for line in same]
-        published = PUBLISHED[options.relation].get(name.split()[0]) if "+" not in name else None
+        figures = PUBLISHED.get((options.relation, name.split()[0]), {}) if "+" not in name else {}
+        published = figures.get(WHOLE)
         rows.append(
             {
                 "variant": name,

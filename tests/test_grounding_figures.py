@@ -16,7 +16,6 @@ from benchmarks.groundings.case import (
     FAILING,
     FIGURES,
     NAMES,
-    PUBLISHED,
     Case,
     Plan,
     cases,
@@ -25,6 +24,7 @@ from benchmarks.groundings.journal import Journal
 from benchmarks.groundings.library import Library
 from benchmarks.groundings.pictures import draw
 from benchmarks.groundings.summary import failures, share
+from benchmarks.paper_ways import PUBLISHED
 from grounding.generate import Job, generate
 from grounding.registry import MODELS, PARAMETER_FREE, SHARED_WEIGHTS, TRAINING_VARIANTS
 from tamp.errors import InputError
@@ -112,6 +112,8 @@ def test_what_is_missing_is_left_out_without_training(
 def test_mistakes_are_said(options: Options, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="Did you mean 'transfer'"):
         main(replace(options, models=("transfre",)))
+    with pytest.raises(InputError, match="unknown model 'gnn-bb-departed'"):  # of the layout paper
+        main(replace(options, models=("gnn-bb-departed",)))
     with pytest.raises(InputError, match=r"on_test\.npz: no such data set"):
         main(
             replace(

@@ -33,14 +33,6 @@ ceiling.
 NAMES = (*FAILING, *DEPARTED)
 """All that can be measured, in the order of the tables."""
 
-PUBLISHED: Mapping[tuple[str, str], Mapping[int, float]] = {
-    ("on", "mlp-pc"): {100: 0.65 * 0.77, 500: 0.99 * 0.77, 20_000: 0.77},
-    ("on", "uniform+mlp"): {20_000: 0.11},
-    ("inside", "mlp-pc"): {10: 0.76 * 0.64, 20_000: 0.64},
-    ("inside", "uniform+gnn"): {20_000: 0.25},
-}
-"""MCA by training scenes, of relation and model: all that the paper's section V says in numbers."""
-
 FIGURES = ("fig4", "fig5", "fig6", "fig7")
 
 

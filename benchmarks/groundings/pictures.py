@@ -6,9 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchmarks.groundings.case import DEPARTED, GENERATORS, PUBLISHED, on_clouds
+from benchmarks.groundings.case import DEPARTED, GENERATORS, on_clouds
 from benchmarks.groundings.measure import BATCHES
 from benchmarks.groundings.summary import JUDGES, PUBLISHED_ORACLE, Share, blind, failures, feasible, grouped, share
+from benchmarks.paper_ways import PUBLISHED
 from grounding.registry import TRAINING_VARIANTS
 from tamp.benchmark.picture import COLOURS, STYLES
 from tamp.errors import InputError

@@ -26,7 +26,7 @@ def goal_agenda(successors: Successors, deadline: Deadline | None = None) -> lis
     """Return growing sets of goal facts, the last of them all; just that one without orders.
 
     Args:
-        successors: The task, in which goal facts that are derived count as unordered.
+        successors: The task; guards alone order goal facts that are derived.
         deadline: When to give up; then there are no orders.
     """
     goals = list(bits(successors.goal))
@@ -53,7 +53,7 @@ def _order_by_exclusion(s: Successors, earlier: dict[int, set[int]], deadline: D
     except MutexUndecided:
         return
 
-    achievers = _achievers(s)
+    achievers = _achievers(s, {goal: 1 << goal for goal in earlier})
     traces = {goal: _trace(s, achievers.get(goal, ())) for goal in earlier}
     for late, apart in zip(earlier, mutexes.exclusive(s.facts, s.goal), strict=True):
         for early in earlier:
@@ -123,13 +123,11 @@ def _sources(s: Successors) -> dict[int, State]:
     return found | {goal: facts for goal, facts in derived.items() if facts > 0}
 
 
-def _achievers(s: Successors, sources: Mapping[int, State] | None = None) -> dict[int, list[int]]:
-    """List for each goal fact the operators that add it, or a source of it; no goal that is reached
-    by a conditional effect.
+def _achievers(s: Successors, sources: Mapping[int, State]) -> dict[int, list[int]]:
+    """List for each goal fact the operators that add a source of it; no goal that is reached by a
+    conditional effect.
     """
     goals: dict[int, list[int]] = {}
-    if sources is None:
-        sources = {goal: 1 << goal for goal in bits(s.goal)}
     for goal, facts in sources.items():
         for fact in bits(facts):
             goals.setdefault(fact, []).append(goal)

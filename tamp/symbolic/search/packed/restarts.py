@@ -81,19 +81,23 @@ def greedy_with_restarts(search: SearchSpace, names: Sequence[str], seed: int = 
         names: The heuristics of the first search.
         seed: Of the random orders.
     """
-    rng = Random(seed)
+    first = PackedSearch(search, names, math.inf)
     by_guards = guard_agenda(search.successors)
     if len(by_guards) > 1:
+        try:
+            return first.plan(1)  # what the whole goal is estimated at is told, too
+        except Stalled:
+            pass
         try:
             return by_agenda(search, Way(tuple(names), agenda=tuple(by_guards)), 0, STALLED_STATES)
         except Stalled:
             pass
-    first = PackedSearch(search, names, math.inf)
     try:
         return first.plan(STALLED_STATES)
     except Stalled:
         pass
 
+    rng = Random(seed)
     turns = _turns(ways(names, goal_agenda(search.successors, search.deadline)))
     for number, way in zip(count(1), turns, strict=False):
         states = SHORTEST_RESTART_STATES * luby(number)

@@ -132,7 +132,7 @@ def test_goals_that_guards_order_come_in_parts_from_the_start() -> None:
     plan = restarts.greedy_with_restarts(run, ("ff",))
     assert plan is not None
     assert [operator.name for operator in plan.operators] == ["deep", "near"]
-    assert plan.cost == 2.0 and run.expanded == 2
+    assert plan.cost == 2.0 and run.first == 2.0 and run.expanded == 4
 
 
 def test_an_order_by_guards_into_a_dead_end_is_left() -> None:
